@@ -32,7 +32,7 @@ static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt 
   o->ds[b] = length / n;
   for (int c = 0; c < 2; c++) m->velocity[c] = own->velocity[2 * b + c];
   m->rotation = own->turn[b];
-  m->turned = own->moving && m->rotation != 0 && !own->circle[b] ? PETSC_TRUE : PETSC_FALSE;
+  m->turned = own->moving && m->rotation != 0 && !own->circles ? PETSC_TRUE : PETSC_FALSE;
   m->carried = m->turned || (own->moving && (m->velocity[0] != 0 || m->velocity[1] != 0)) ? PETSC_TRUE : PETSC_FALSE;
   if (m->carried) o->moving = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

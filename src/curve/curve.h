@@ -18,6 +18,10 @@ typedef struct {
   CurveKind *kind;     /* [vesicles]; NULL: all closed */
   char digest[DIGEST]; /* of the curves in their file; empty without a file */
 } Shape;
+
+/* ShapeCreate - curves of markers[n] markers each, of the kinds kind[n] (NULL: all closed); the places X are not set.
+   Not collective. */
+PETSC_EXTERN PetscErrorCode ShapeCreate(PetscInt n, const PetscInt markers[], const CurveKind kind[], Shape *shape);
 PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 
 /* ShapeRadius - R0 of vesicle v: its length over 2 pi. Not collective. */

@@ -1,6 +1,18 @@
 /* Curves as markers, the red cell's outline, and the centroid of a curve. */
 #include "curve/curve.h"
 
+PetscErrorCode ShapeCreate(PetscInt n, const PetscInt markers[], const CurveKind kind[], Shape *shape) {
+  PetscFunctionBeginUser;
+  shape->vesicles = n;
+  PetscCall(PetscCalloc1(n + 1, &shape->start));
+  for (PetscInt v = 0; v < n; v++) shape->start[v + 1] = shape->start[v] + markers[v];
+  PetscCall(PetscMalloc1(2 * shape->start[n], &shape->X));
+  if (!kind) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &shape->kind));
+  PetscCall(PetscArraycpy(shape->kind, kind, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ShapeDestroy(Shape *shape) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(shape->start));

@@ -5,27 +5,28 @@
 #include "scene/openbodies.h"
 #include "scene/properties.h"
 
-/* The curves before they have markers. */
+/* A curve before it has markers. */
+typedef struct {
+  Curve curve;
+  PetscReal center[2]; /* added to the curve's points */
+  CurveNote note;
+  PetscReal part[2]; /* parameters of an open curve between which the markers are */
+  PetscInt wall;     /* 2 direction + side of the wall that an open curve is on; -1 of other curves */
+} Outline;
+
 typedef struct {
   PetscInt count;
-  Curve *curve;
-  PetscReal *center; /* [2 count] added to the curve's points */
-  CurveNote *note;
-  PetscReal *part; /* [2 count] of the parameter of open ones, that markers are on */
-  PetscInt *wall;  /* [count] that open ones are on */
+  Outline *of; /* [count] */
 } Outlines;
 
-/* Columns and rows of posts over the whole box, each row a part of a column further than the one below. */
-static void PlaceLattice(Scene scene, PetscReal center[]) {
+/* The place of post k where columns and rows fill the box, each row a part of a column further than the one below. */
+static void PlaceInLattice(Scene scene, PetscInt k, PetscReal center[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscReal *b = scene->fluid.box;
   const PetscInt columns = own->lattice.v[0], rows = own->lattice.v[1];
-  const PetscReal dx = (b[1] - b[0]) / columns, dy = (b[3] - b[2]) / rows;
-  for (PetscInt k = 0; k < columns * rows; k++) {
-    const PetscReal at = k % columns + 0.5 + k / columns * own->shift;
-    center[2 * k] = b[0] + dx * (at - columns * PetscFloorReal(at / columns));
-    center[2 * k + 1] = b[2] + dy * (k / columns + 0.5);
-  }
+  const PetscReal at = k % columns + 0.5 + k / columns * own->shift;
+  center[0] = b[0] + (b[1] - b[0]) / columns * (at - columns * PetscFloorReal(at / columns));
+  center[1] = b[2] + (b[3] - b[2]) / rows * (k / columns + 0.5);
 }
 
 static PetscErrorCode CheckLattice(Scene scene) {
@@ -44,32 +45,26 @@ static PetscErrorCode CheckLattice(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateOutlines(Scene scene, PetscInt count, Outlines *o) {
-  PetscFunctionBeginUser;
-  o->count = count;
-  PetscCall(PetscCalloc1(count, &o->curve));
-  PetscCall(PetscCalloc1(2 * count, &o->center));
-  PetscCall(PetscCalloc1(count, &o->note));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Make circles, with the velocity and rotation that the options give each of them. */
 static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscBool lattice = own->lattice.n == 2 && own->lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  PetscCall(CreateOutlines(scene, count, o));
+  o->count = count;
+  PetscCall(PetscCalloc1(count, &o->of));
   PetscCall(SceneCheckList(scene, "-obstacle_radius", own->radius.n, 1, count, "obstacles", "each"));
   PetscCall(SceneCheckList(scene, "-obstacle_velocity", own->move.n, 2, count, "obstacles", "each"));
   PetscCall(SceneCheckList(scene, "-obstacle_rotation", own->rotation.n, 1, count, "obstacles", "each"));
-  if (lattice) PlaceLattice(scene, o->center);
-  for (PetscInt k = 0; k < count; k++)
+  for (PetscInt k = 0; k < count; k++) {
+    Outline *one = &o->of[k];
+    if (lattice) PlaceInLattice(scene, k, one->center);
     for (int c = 0; c < 2; c++) {
-      o->curve[k].axes[c] = ListEntry(&own->radius, 1, k, 0);
-      if (!lattice) o->center[2 * k + c] = ListEntry(&own->center, 2, k, c);
-      o->note[k].velocity[c] = ListEntry(&own->move, 2, k, c);
-      o->note[k].rotation = ListEntry(&own->rotation, 1, k, 0);
+      one->curve.axes[c] = ListEntry(&own->radius, 1, k, 0);
+      if (!lattice) one->center[c] = ListEntry(&own->center, 2, k, c);
+      one->note.velocity[c] = ListEntry(&own->move, 2, k, c);
     }
+    one->note.rotation = ListEntry(&own->rotation, 1, k, 0);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,7 +94,7 @@ static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
       (double)own->radius.v[0], (double)own->radius.v[1]);
   PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 2, "obstacles", "each"));
   PetscCall(MakeCircles(scene, 2, o));
-  o->note[1].clockwise = PETSC_TRUE;
+  o->of[1].note.clockwise = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,31 +109,26 @@ static PetscErrorCode MakeConstriction(Scene scene, Outlines *o) {
              "-obstacle_length %g: the box is %g long; allowed: less than that", (double)own->length,
              (double)(f->box[1] - f->box[0]));
   PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 1, "obstacles", "each"));
-  PetscCall(CreateOutlines(scene, 2, o));
-  for (int side = 0; side < 2; side++) PetscCall(ArcBump(scene, side, &o->curve[side]));
+  o->count = 2;
+  PetscCall(PetscCalloc1(2, &o->of));
+  for (int side = 0; side < 2; side++) PetscCall(ArcBump(scene, side, &o->of[side].curve));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode MakeFromFile(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   PetscReal period[2];
+  Curve *curve;
+  CurveNote *note;
   PetscFunctionBeginUser;
   PetscCheck(*own->file, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape file: no -obstacle_file given; allowed: a text file with x y a line");
   FluidSpecPeriods(&scene->fluid, period);
-  PetscCall(CurvesFromFile(scene->comm, "-obstacle_file", own->file, period, &o->count, &o->curve, &o->note));
-  PetscCall(PetscCalloc1(2 * o->count, &o->center));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Find the parts of open curves that carry markers. */
-static PetscErrorCode Cut(Scene scene, Outlines *o) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * o->count, &o->part, o->count, &o->wall));
-  for (PetscInt k = 0; k < o->count; k++) {
-    o->wall[k] = -1;
-    if (o->curve[k].kind.type == CURVE_OPEN) PetscCall(ArcCut(scene, k, &o->curve[k], o->part + 2 * k, &o->wall[k]));
-  }
+  PetscCall(CurvesFromFile(scene->comm, "-obstacle_file", own->file, period, &o->count, &curve, &note));
+  PetscCall(PetscCalloc1(o->count, &o->of));
+  for (PetscInt k = 0; k < o->count; k++) o->of[k] = (Outline){.curve = curve[k], .note = note[k]};
+  PetscCall(PetscFree(curve));
+  PetscCall(PetscFree(note));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,21 +139,28 @@ static PetscErrorCode Cut(Scene scene, Outlines *o) {
 
 /* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
    is half a spacing off its wall. */
-static PetscErrorCode Number(Scene scene, const Outlines *o, Shape *shape) {
+static PetscErrorCode CreateShape(Scene scene, const Outlines *o, Shape *shape) {
   const PetscReal spacing = scene->obstacles.spacing * FluidSpecCellSize(&scene->fluid);
+  PetscInt *markers, all = 0;
+  CurveKind *kind;
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(o->count, &markers, o->count, &kind));
   for (PetscInt k = 0; k < o->count; k++) {
-    const PetscBool open = o->curve[k].kind.type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE;
-    const PetscReal *part = o->part + 2 * k;
-    const PetscReal length = open ? CurvePartLength(&o->curve[k], part[0], part[1]) : CurveLength(&o->curve[k]);
+    const Outline *one = &o->of[k];
+    const PetscBool open = one->curve.kind.type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE;
+    const PetscReal length = open ? CurvePartLength(&one->curve, one->part[0], one->part[1]) : CurveLength(&one->curve);
     const PetscReal wanted = length / spacing;
-    PetscCheck(shape->start[k] + wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(all + wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
                "-obstacle_spacing %g: more than %d markers on the obstacles; allowed: at most that many, so a larger "
                "spacing, fewer obstacles or coarser -domain_cells",
                (double)scene->obstacles.spacing, MOST_MARKERS);
     const PetscInt n = open ? 1 + (PetscInt)PetscCeilReal(wanted) : 2 * (PetscInt)PetscFloorReal(wanted / 2) + 1;
-    shape->start[k + 1] = shape->start[k] + PetscMax(LEAST_MARKERS, n);
+    markers[k] = PetscMax(LEAST_MARKERS, n);
+    all += markers[k];
+    kind[k] = one->curve.kind;
   }
+  PetscCall(ShapeCreate(o->count, markers, kind, shape));
+  PetscCall(PetscFree2(markers, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,28 +185,23 @@ static PetscErrorCode ChooseFactor(Scene scene, const Outlines *o, SceneObstacle
 static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacles *own) {
   Shape *shape = &own->outline;
   PetscFunctionBeginUser;
-  shape->vesicles = o->count;
-  PetscCall(PetscStrncpy(shape->digest, o->curve[0].digest, DIGEST));
-  PetscCall(PetscCalloc1(o->count + 1, &shape->start));
-  PetscCall(Number(scene, o, shape));
+  PetscCall(PetscStrncpy(shape->digest, o->of[0].curve.digest, DIGEST));
+  PetscCall(CreateShape(scene, o, shape));
   PetscCall(ChooseFactor(scene, o, own));
-  PetscCall(PetscMalloc1(2 * shape->start[o->count], &shape->X));
-  PetscCall(PetscMalloc1(o->count, &shape->kind));
   PetscCall(PetscMalloc2(scene->shape.vesicles + o->count, &own->holder, o->count, &own->vesicle));
-  PetscCall(PetscCalloc5(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
-                         &own->circle, o->count, &own->wall));
+  PetscCall(PetscCalloc4(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
+                         &own->wall));
+  own->circles = own->shape == OBSTACLE_POSTS || own->shape == OBSTACLE_COUETTE ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = 0; k < o->count; k++) {
-    PetscReal *X = shape->X + 2 * shape->start[k];
+    const Outline *one = &o->of[k];
     const PetscInt n = shape->start[k + 1] - shape->start[k];
-    shape->kind[k] = o->curve[k].kind;
-    own->wall[k] = o->wall[k];
-    const PetscReal *part = o->curve[k].kind.type == CURVE_OPEN ? o->part + 2 * k : NULL;
-    PetscCall(CurveEqualArcs(&o->curve[k], part, n, X));
-    for (PetscInt j = 0; j < 2 * n; j++) X[j] += o->center[2 * k + j % 2];
-    for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = o->note[k].velocity[c];
-    own->turn[k] = o->note[k].rotation;
-    own->circle[k] = own->shape == OBSTACLE_POSTS || own->shape == OBSTACLE_COUETTE ? PETSC_TRUE : PETSC_FALSE;
-    own->container[k] = o->curve[k].kind.type == CURVE_CLOSED ? o->note[k].clockwise : PETSC_FALSE;
+    PetscReal *X = shape->X + 2 * shape->start[k];
+    PetscCall(CurveEqualArcs(&one->curve, one->curve.kind.type == CURVE_OPEN ? one->part : NULL, n, X));
+    for (PetscInt j = 0; j < 2 * n; j++) X[j] += one->center[j % 2];
+    for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = one->note.velocity[c];
+    own->turn[k] = one->note.rotation;
+    own->wall[k] = one->wall;
+    own->container[k] = one->curve.kind.type == CURVE_CLOSED ? one->note.clockwise : PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -223,14 +215,15 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(MakeCouette(scene, &o));
   if (scene->obstacles.shape == OBSTACLE_CONSTRICTION) PetscCall(MakeConstriction(scene, &o));
   if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(MakeFromFile(scene, &o));
-  PetscCall(Cut(scene, &o));
+  for (PetscInt k = 0; k < o.count; k++) {
+    Outline *one = &o.of[k];
+    one->wall = -1;
+    if (one->curve.kind.type == CURVE_OPEN) PetscCall(ArcCut(scene, k, &one->curve, one->part, &one->wall));
+  }
   PetscCall(PlaceMarkers(scene, &o, &scene->obstacles));
   scene->fluid.held = PETSC_TRUE;
-  for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.curve[k]));
-  PetscCall(PetscFree(o.curve));
-  PetscCall(PetscFree(o.center));
-  PetscCall(PetscFree(o.note));
-  PetscCall(PetscFree2(o.part, o.wall));
+  for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.of[k].curve));
+  PetscCall(PetscFree(o.of));
   PetscCall(SceneCheckObstacles(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -241,6 +234,6 @@ PetscErrorCode SceneDropObstacles(Draft scene) {
   if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&own->outline));
   PetscCall(PetscFree2(own->holder, own->vesicle));
-  PetscCall(PetscFree5(own->velocity, own->turn, own->container, own->circle, own->wall));
+  PetscCall(PetscFree4(own->velocity, own->turn, own->container, own->wall));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -73,7 +73,7 @@ typedef struct {
   PetscBool *container;          /* [curves] the fluid is inside the curve */
   PetscInt *holder;              /* [vesicles + curves] the container around each; -1: none */
   PetscInt *vesicle;             /* [curves] the vesicle around each; -1: none */
-  PetscBool *circle;             /* [curves] a turn does not change the curve */
+  PetscBool circles;             /* all curves are circles, which turns do not change */
   PetscInt *wall; /* [curves] 2 direction + side of the wall that an open curve is on; -1 of other curves */
 } SceneObstacles;
 

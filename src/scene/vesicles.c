@@ -102,18 +102,22 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number the markers of all vesicles; a kind is fitted when its first vesicle is met. */
-static PetscErrorCode Number(Scene scene, Kinds *kinds, Shape *shape) {
+/* Fit the kinds, and make the shape with the numbers of their markers. */
+static PetscErrorCode CreateShape(Scene scene, Kinds *kinds, Shape *shape) {
+  PetscInt *markers, all = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(shape->vesicles + 1, &shape->start));
-  for (PetscInt v = 0; v < shape->vesicles; v++) {
+  PetscCall(PetscMalloc1(kinds->vesicles, &markers));
+  for (PetscInt v = 0; v < kinds->vesicles; v++) {
     Kind *kind = &kinds->kind[kinds->of[v]];
     if (!kind->M) PetscCall(KindFit(scene, kind));
-    PetscCheck(shape->start[v] < PETSC_MAX_INT / 8 - kind->M, scene->comm, PETSC_ERR_USER_INPUT,
-               "-vesicle_count %" PetscInt_FMT ": more markers than this PETSc can number; allowed: fewer vesicles",
-               shape->vesicles);
-    shape->start[v + 1] = shape->start[v] + kind->M;
+    PetvesCheck(all < PETSC_MAX_INT / 8 - kind->M, scene->comm,
+                "-vesicle_count %" PetscInt_FMT ": more markers than this PETSc can number; allowed: fewer vesicles",
+                kinds->vesicles);
+    markers[v] = kind->M;
+    all += kind->M;
   }
+  PetscCall(ShapeCreate(kinds->vesicles, markers, NULL, shape));
+  PetscCall(PetscFree(markers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,14 +127,12 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   Pose *pose;
   PetscFunctionBeginUser;
   PetscCall(KindsCreate(scene, &kinds));
-  shape->vesicles = kinds.vesicles;
   if (kinds.kinds) PetscCall(PetscStrncpy(shape->digest, kinds.kind[0].curve.digest, DIGEST));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
   PetscCall(ScenePlace(scene, &kinds, pose));
   for (PetscInt v = 0; v < kinds.vesicles; v++) PetscCall(CheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
-  PetscCall(Number(scene, &kinds, shape));
-  PetscCall(PetscMalloc1(2 * shape->start[shape->vesicles], &shape->X));
+  PetscCall(CreateShape(scene, &kinds, shape));
   for (PetscInt v = 0; v < kinds.vesicles; v++) {
     const Kind *kind = &kinds.kind[kinds.of[v]];
     Place(kind, &pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
