@@ -1,12 +1,12 @@
 /* All options of a table: read, chosen, shown, written. */
 #include "options/options.h"
 
-static const void *Place(const OptionTable *t, const void *values, PetscInt i) {
+static const void *OptionPlace(const OptionTable *t, const void *values, PetscInt i) {
   return (const char *)values + t->row[i].offset;
 }
 
 /* The value that the user gave, as long as it may be, or the default. */
-static PetscErrorCode ReadOption(MPI_Comm comm, const OptionRow *o, PetscBool given, void *place) {
+static PetscErrorCode OptionReadValue(MPI_Comm comm, const OptionRow *o, PetscBool given, void *place) {
   const PetscBool ranged = *o->range && strcmp(o->range, "any") ? PETSC_TRUE : PETSC_FALSE;
   const char *text = NULL;
   PetscFunctionBeginUser;
@@ -34,7 +34,7 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
     PetscCall(PetscSNPrintf(ranged, sizeof(ranged), *range ? "%s [%s]" : "%s%s", help, range));
     PetscCall(
         PetscOptionsString(row[i].name, ranged, "docs/options.md", row[i].value, text, sizeof(text), &t->given[i]));
-    PetscCall(ReadOption(comm, &row[i], t->given[i], (void *)Place(t, values, i)));
+    PetscCall(OptionReadValue(comm, &row[i], t->given[i], (void *)OptionPlace(t, values, i)));
   }
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -43,7 +43,7 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
 PetscErrorCode OptionsDestroy(OptionTable *t, void *values) {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
-    void *place = (void *)Place(t, values, i);
+    void *place = (void *)OptionPlace(t, values, i);
     if (t->row[i].type == OPT_REALS) PetscCall(PetscFree(((RealList *)place)->v));
     if (t->row[i].type == OPT_INTS) PetscCall(PetscFree(((IntList *)place)->v));
   }
@@ -67,7 +67,7 @@ PetscErrorCode OptionChoose(const OptionTable *t, void *values, const char name[
   const PetscInt i = OptionFind(t, name);
   PetscFunctionBeginUser;
   PetscCheck(i >= 0, t->comm, PETSC_ERR_PLIB, "%s is not in the table of options", name);
-  if (!t->given[i]) PetscCall(OptionParse(t->comm, &t->row[i], text, (void *)Place(t, values, i)));
+  if (!t->given[i]) PetscCall(OptionParse(t->comm, &t->row[i], text, (void *)OptionPlace(t, values, i)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,7 +112,7 @@ PetscErrorCode OptionsCheckUsed(const OptionTable *t, const void *values) {
 
 PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {
   PetscFunctionBeginUser;
-  PetscCall(OptionFormat(&t->row[i], Place(t, values, i), text));
+  PetscCall(OptionFormat(&t->row[i], OptionPlace(t, values, i), text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,7 +137,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
     PetscBool left = OptionUsed(&t->row[i], values) ? PETSC_FALSE : PETSC_TRUE;
     for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name) ? PETSC_TRUE : PETSC_FALSE;
     if (left) continue;
-    PetscCall(OptionFormat(&t->row[i], Place(t, values, i), &text));
+    PetscCall(OptionFormat(&t->row[i], OptionPlace(t, values, i), &text));
     if (*text) OptionPrint(file, t->row[i].name, text);
     PetscCall(PetscFree(text));
   }
@@ -148,7 +148,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
 #define INDENT 6
 
 /* Words of a text in lines of at most WIDTH characters. */
-static void PrintWrapped(FILE *file, const char *text) {
+static void OptionPrintWrapped(FILE *file, const char *text) {
   size_t at = 0;
   for (const char *p = text; *p;) {
     const size_t n = strcspn(p, " ");
@@ -175,5 +175,5 @@ void OptionHelp(FILE *file, const OptionRow *row, const OptionDefault dependent[
   fprintf(file, "  %s%s%s", row->name, *row->value ? " " : "", row->value);
   fprintf(file, *row->range && strcmp(row->range, "any") ? "  [%s]\n" : "\n", row->range);
   OptionHelpText(row, dependent, help);
-  PrintWrapped(file, help);
+  OptionPrintWrapped(file, help);
 }

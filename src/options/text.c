@@ -5,7 +5,7 @@
 #define DIGITS 26 /* characters of a number with 17 digits and its comma, at most */
 
 /* One number from text; the whole text must be used up and finite. */
-static PetscBool ParseReal(const char *text, PetscReal *value) {
+static PetscBool OptionParseReal(const char *text, PetscReal *value) {
   char *end;
   while (isspace((unsigned char)*text)) text++;
   if (!*text) return PETSC_FALSE;
@@ -14,7 +14,7 @@ static PetscBool ParseReal(const char *text, PetscReal *value) {
   return !*end && !PetscIsInfOrNanReal(*value) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscBool InRange(const char *range, PetscReal x) {
+static PetscBool OptionInRange(const char *range, PetscReal x) {
   double a, b;
   if (!strcmp(range, ">0")) return x > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (sscanf(range, ">=%lf", &a) == 1) return x >= a ? PETSC_TRUE : PETSC_FALSE;
@@ -23,21 +23,21 @@ static PetscBool InRange(const char *range, PetscReal x) {
   return PETSC_TRUE;
 }
 
-static PetscErrorCode ParseNumber(MPI_Comm comm, const OptionRow *o, const char *text, PetscBool integer,
-                                  PetscReal *x) {
+static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const char *text, PetscBool integer,
+                                        PetscReal *x) {
   const char *what = integer ? "an integer" : "a number";
   PetscFunctionBeginUser;
-  PetscCheck(ParseReal(text, x) &&
+  PetscCheck(OptionParseReal(text, x) &&
                  (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
              comm, PETSC_ERR_USER_INPUT, "%s %s: not %s; allowed: %s%s%s", o->name, text, what, what,
              strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
-  PetscCheck(InRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: out of range; allowed: %s %s", o->name, text,
-             what, o->range);
+  PetscCheck(OptionInRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: out of range; allowed: %s %s", o->name,
+             text, what, o->range);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Index of text in "a|b|c", or -1. */
-static PetscInt IndexInList(const char *list, const char *text) {
+static PetscInt OptionIndexInList(const char *list, const char *text) {
   const size_t length = strlen(text);
   PetscInt index = 0;
   for (const char *p = list; *p; index++) {
@@ -49,7 +49,8 @@ static PetscInt IndexInList(const char *list, const char *text) {
 }
 
 /* Numbers between commas, x to be freed. */
-static PetscErrorCode ParseNumbers(MPI_Comm comm, const OptionRow *o, const char *text, PetscInt *n, PetscReal **x) {
+static PetscErrorCode OptionParseNumbers(MPI_Comm comm, const OptionRow *o, const char *text, PetscInt *n,
+                                         PetscReal **x) {
   const PetscBool integer = o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
   char *item;
   PetscFunctionBeginUser;
@@ -60,20 +61,20 @@ static PetscErrorCode ParseNumbers(MPI_Comm comm, const OptionRow *o, const char
   for (PetscInt k = 0; k < *n; k++) {
     const size_t length = strcspn(text, ",");
     PetscCall(PetscStrncpy(item, text, length + 1));
-    PetscCall(ParseNumber(comm, o, item, integer, *x + k));
+    PetscCall(OptionParseNumber(comm, o, item, integer, *x + k));
     text += length + 1;
   }
   PetscCall(PetscFree(item));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ParseList(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
+static PetscErrorCode OptionParseList(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
   IntList *ints = (IntList *)place;
   RealList *reals = (RealList *)place;
   PetscReal *x;
   PetscInt n;
   PetscFunctionBeginUser;
-  PetscCall(ParseNumbers(comm, o, text, &n, &x));
+  PetscCall(OptionParseNumbers(comm, o, text, &n, &x));
   if (o->type == OPT_REALS) {
     PetscCall(PetscFree(reals->v));
     reals->n = n;
@@ -89,17 +90,17 @@ static PetscErrorCode ParseList(MPI_Comm comm, const OptionRow *o, const char *t
 }
 
 /* One word: a truth, or a name of the range. */
-static PetscErrorCode ParseWord(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
+static PetscErrorCode OptionParseWord(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
   PetscInt index;
   PetscFunctionBeginUser;
   if (o->type == OPT_BOOL) {
-    const PetscInt yes = IndexInList("|true|yes|on|1", text), no = IndexInList("false|no|off|0", text);
+    const PetscInt yes = OptionIndexInList("|true|yes|on|1", text), no = OptionIndexInList("false|no|off|0", text);
     PetscCheck(yes >= 0 || no >= 0 || !*text, comm, PETSC_ERR_USER_INPUT, "%s %s: allowed: true or false", o->name,
                text);
     *(PetscBool *)place = no >= 0 ? PETSC_FALSE : PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  index = IndexInList(o->range, text);
+  index = OptionIndexInList(o->range, text);
   PetscCheck(index >= 0, comm, PETSC_ERR_USER_INPUT, "%s %s: unknown; allowed: %s", o->name, text, o->range);
   if (o->type == OPT_ENUM)
     *(PetscInt *)place = index;
@@ -109,7 +110,7 @@ static PetscErrorCode ParseWord(MPI_Comm comm, const OptionRow *o, const char *t
 }
 
 /* A name that resolved.opts can hold, so that it repeats the run: options files have no escapes. */
-static PetscErrorCode ParsePath(MPI_Comm comm, const OptionRow *o, const char *text, char path[]) {
+static PetscErrorCode OptionParsePath(MPI_Comm comm, const OptionRow *o, const char *text, char path[]) {
   PetscBool plain = text[0] == '-' ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionBeginUser;
   for (const char *c = text; *c && plain; c++)
@@ -130,35 +131,35 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
   PetscFunctionBeginUser;
   switch (o->type) {
   case OPT_REAL:
-    PetscCall(ParseNumber(comm, o, text, PETSC_FALSE, &x));
+    PetscCall(OptionParseNumber(comm, o, text, PETSC_FALSE, &x));
     *(PetscReal *)place = x;
     break;
   case OPT_INT:
-    PetscCall(ParseNumber(comm, o, text, PETSC_TRUE, &x));
+    PetscCall(OptionParseNumber(comm, o, text, PETSC_TRUE, &x));
     *(PetscInt *)place = (PetscInt)x;
     break;
   case OPT_PATH:
-    PetscCall(ParsePath(comm, o, text, (char *)place));
+    PetscCall(OptionParsePath(comm, o, text, (char *)place));
     break;
   case OPT_REALS:
   case OPT_INTS:
-    PetscCall(ParseList(comm, o, text, place));
+    PetscCall(OptionParseList(comm, o, text, place));
     break;
   default:
-    PetscCall(ParseWord(comm, o, text, place));
+    PetscCall(OptionParseWord(comm, o, text, place));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Characters that the value takes, its end included. */
-static size_t Room(const OptionRow *o, const void *place) {
+static size_t OptionRoom(const OptionRow *o, const void *place) {
   if (o->type == OPT_PATH) return PETSC_MAX_PATH_LEN;
   if (o->type == OPT_REALS) return DIGITS * (size_t)((const RealList *)place)->n + 1;
   if (o->type == OPT_INTS) return DIGITS * (size_t)((const IntList *)place)->n + 1;
   return DIGITS + OPTION_MAX_NAME;
 }
 
-static PetscErrorCode FormatList(const OptionRow *o, const void *place, char text[]) {
+static PetscErrorCode OptionFormatList(const OptionRow *o, const void *place, char text[]) {
   const RealList *reals = (const RealList *)place;
   const IntList *ints = (const IntList *)place;
   const PetscInt n = o->type == OPT_REALS ? reals->n : ints->n;
@@ -176,7 +177,7 @@ static PetscErrorCode FormatList(const OptionRow *o, const void *place, char tex
 }
 
 PetscErrorCode OptionFormat(const OptionRow *o, const void *place, char **out) {
-  const size_t room = Room(o, place);
+  const size_t room = OptionRoom(o, place);
   char *text;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(room, &text));
@@ -199,7 +200,7 @@ PetscErrorCode OptionFormat(const OptionRow *o, const void *place, char **out) {
   }
   case OPT_REALS:
   case OPT_INTS:
-    PetscCall(FormatList(o, place, text));
+    PetscCall(OptionFormatList(o, place, text));
     break;
   default:
     PetscCall(PetscStrncpy(text, (const char *)place, room));

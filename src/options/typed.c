@@ -28,7 +28,7 @@ typedef struct _Source {
 } Source;
 
 /* Write the message of a mistake; it begins with the place where the mistake is. */
-static void PETSC_ATTRIBUTE_FORMAT(3, 4) Wrong(Typed *t, const Source *from, const char format[], ...) {
+static void PETSC_ATTRIBUTE_FORMAT(3, 4) TypedWrong(Typed *t, const Source *from, const char format[], ...) {
   int used = 0;
   va_list arguments;
   if (from->line)
@@ -41,7 +41,7 @@ static void PETSC_ATTRIBUTE_FORMAT(3, 4) Wrong(Typed *t, const Source *from, con
   va_end(arguments);
 }
 
-static void Append(Typed *t, const char *name, const char *value) {
+static void TypedAppend(Typed *t, const char *name, const char *value) {
   const size_t need = strlen(name) + (value ? strlen(value) + 1 : 0) + 2;
   if (t->used + need > t->room) {
     t->room = 2 * (t->used + need);
@@ -53,46 +53,47 @@ static void Append(Typed *t, const char *name, const char *value) {
 }
 
 /* TRUE if a word is the name of an option and not a value: a dash and a letter, except -inf and -nan. */
-static PetscBool IsName(const Word *word) {
+static PetscBool WordIsName(const Word *word) {
   PetscBool is = PETSC_FALSE;
   if (!word->quoted) (void)PetscOptionsValidKey(word->text, &is);
   return is;
 }
 
-static void CheckName(Typed *t, const Source *from, const char *name) {
+static void TypedCheckName(Typed *t, const Source *from, const char *name) {
   const char *p = name + 1;
   if (*p == '-') {
-    Wrong(t, from, "%.100s: two dashes; allowed: one, as in %.100s", name, name + 1);
+    TypedWrong(t, from, "%.100s: two dashes; allowed: one, as in %.100s", name, name + 1);
     return;
   }
   while (isalnum((unsigned char)*p) || *p == '_' || *p == '-' || *p == '.') p++;
   if (*p == '=')
-    Wrong(t, from, "%.100s: an equals sign; allowed: a blank, as in %.*s %.60s", name, (int)PetscMin(p - name, 60),
-          name, p[1] ? p + 1 : "VALUE");
+    TypedWrong(t, from, "%.100s: an equals sign; allowed: a blank, as in %.*s %.60s", name, (int)PetscMin(p - name, 60),
+               name, p[1] ? p + 1 : "VALUE");
   else if (*p || p - name > MOST_NAME)
-    Wrong(t, from, "%.100s: not the name of an option; allowed: up to %d letters, digits and _", name, MOST_NAME);
+    TypedWrong(t, from, "%.100s: not the name of an option; allowed: up to %d letters, digits and _", name, MOST_NAME);
 }
 
 /* Write the message of a word that stands where an option should begin: after an option with a value, or alone. */
-static void WrongWord(Typed *t, const Source *from, const char *name, const char *value, const char *word) {
+static void TypedWrongWord(Typed *t, const Source *from, const char *name, const char *value, const char *word) {
   const PetscBool comma = value && *value && (value[strlen(value) - 1] == ',' || *word == ',') ? PETSC_TRUE
                                                                                                : PETSC_FALSE;
   if (value && *value == '=')
-    Wrong(t, from, "%.60s = %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, word, name, word);
+    TypedWrong(t, from, "%.60s = %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, word, name, word);
   else if (value)
-    Wrong(t, from,
-          "%.60s %.60s %.60s: two values; allowed: one, a list with commas and no blanks (%.60s%s%.60s), text with "
-          "blanks in quotes",
-          name, value, word, value, comma ? "" : ",", word);
+    TypedWrong(
+        t, from,
+        "%.60s %.60s %.60s: two values; allowed: one, a list with commas and no blanks (%.60s%s%.60s), text with "
+        "blanks in quotes",
+        name, value, word, value, comma ? "" : ",", word);
   else if (from->line)
-    Wrong(t, from, "no option, for its first word begins with no dash; allowed: -name value");
+    TypedWrong(t, from, "no option, for its first word begins with no dash; allowed: -name value");
   else
-    Wrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or petves run FILE", word);
+    TypedWrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or petves run FILE", word);
 }
 
-static void ReadFile(Typed *t, const char *path, const Source *outer);
+static void TypedReadFile(Typed *t, const char *path, const Source *outer);
 
-static PetscBool HasPart(const char *name, const char *const part[], PetscBool first) {
+static PetscBool NameHasPart(const char *name, const char *const part[], PetscBool first) {
   for (; *part; part++) {
     const char *found = strcasestr(name, *part);
     if (found && (found == name || !first)) return PETSC_TRUE;
@@ -107,9 +108,9 @@ PetscBool TypedIsOwn(const char *name, const char *value) {
                                       "-saws",      "-start_",  "-stop_for", "-viewer",   "-x_",     NULL};
   static const char *const any[] = {"python", "_dump", "_draw", "_plot", "tmpdir", NULL};
   static const char *const shows[] = {"_view", "_monitor", "_converged_r", NULL}, *const type[] = {"_type", NULL};
-  if (HasPart(name, first, PETSC_TRUE) || HasPart(name, any, PETSC_FALSE)) return PETSC_TRUE;
+  if (NameHasPart(name, first, PETSC_TRUE) || NameHasPart(name, any, PETSC_FALSE)) return PETSC_TRUE;
   if (!value || !*value) return PETSC_FALSE;
-  return HasPart(name, shows, PETSC_FALSE) || (HasPart(name, type, PETSC_FALSE) && !strcasecmp(value, "python"))
+  return NameHasPart(name, shows, PETSC_FALSE) || (NameHasPart(name, type, PETSC_FALSE) && !strcasecmp(value, "python"))
              ? PETSC_TRUE
              : PETSC_FALSE;
 }
@@ -118,33 +119,33 @@ PetscBool TypedIsOwn(const char *name, const char *value) {
 static const char *const others[] = {"-options_file_yaml", "-options_string_yaml", "-saws", NULL};
 
 /* Pairs of names and values. files: -options_file is to be read (1), left out (-1). */
-static void TakeWords(Typed *t, const Source *from, int n, const Word word[], int files) {
+static void TypedTakeWords(Typed *t, const Source *from, int n, const Word word[], int files) {
   for (int k = 0; k < n && !*t->error;) {
     const char *name = word[k].text, *value = NULL;
-    if (!IsName(&word[k])) WrongWord(t, from, NULL, NULL, name);
-    if (!*t->error) CheckName(t, from, name);
-    if (++k < n && !IsName(&word[k])) value = word[k++].text;
-    if (!*t->error && k < n && !IsName(&word[k])) WrongWord(t, from, name, value, word[k].text);
+    if (!WordIsName(&word[k])) TypedWrongWord(t, from, NULL, NULL, name);
+    if (!*t->error) TypedCheckName(t, from, name);
+    if (++k < n && !WordIsName(&word[k])) value = word[k++].text;
+    if (!*t->error && k < n && !WordIsName(&word[k])) TypedWrongWord(t, from, name, value, word[k].text);
     if (!*t->error && value && *value == '=' && !word[k - 1].quoted)
-      Wrong(t, from, "%.60s %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, value, name,
-            value[1] ? value + 1 : "VALUE");
+      TypedWrong(t, from, "%.60s %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, value, name,
+                 value[1] ? value + 1 : "VALUE");
     const PetscBool file = strcasecmp(name, "-options_file") ? PETSC_FALSE : PETSC_TRUE;
-    if (!*t->error && HasPart(name, others, PETSC_TRUE))
-      Wrong(t, from, "%.60s: petves does not read options so; allowed: -options_file, or the command line", name);
+    if (!*t->error && NameHasPart(name, others, PETSC_TRUE))
+      TypedWrong(t, from, "%.60s: petves does not read options so; allowed: -options_file, or the command line", name);
     if (!*t->error && !file && from->line && !t->own && TypedIsOwn(name, value))
-      Wrong(t, from, "%.60s: not for a file, which may come from others; allowed: on the command line", name);
+      TypedWrong(t, from, "%.60s: not for a file, which may come from others; allowed: on the command line", name);
     if (*t->error) return;
     if (!file)
-      Append(t, name, value);
+      TypedAppend(t, name, value);
     else if (!value)
-      Wrong(t, from, "-options_file: given without a value; allowed: a readable file of options");
+      TypedWrong(t, from, "-options_file: given without a value; allowed: a readable file of options");
     else if (files > 0)
-      ReadFile(t, value, from);
+      TypedReadFile(t, value, from);
   }
 }
 
 /* Cut a line into words where it is; returns their number, -1: a quote without its end. */
-static int Cut(char *line, Word word[]) {
+static int TypedCutLine(char *line, Word word[]) {
   int n = 0;
   for (char *p = line;;) {
     p += strspn(p, " \t\f\v");
@@ -165,18 +166,18 @@ static int Cut(char *line, Word word[]) {
 }
 
 /* Take all words of a line; the line is cut into words. */
-static void TakeLine(Typed *t, const Source *from, char *line) {
+static void TypedTakeLine(Typed *t, const Source *from, char *line) {
   Word *word = (Word *)malloc((strlen(line) / 2 + 1) * sizeof(*word));
-  const int n = word ? Cut(line, word) : 0;
+  const int n = word ? TypedCutLine(line, word) : 0;
   if (n < 0)
-    Wrong(t, from, "a quote without its end; allowed: \"...\" or '...' around a value");
+    TypedWrong(t, from, "a quote without its end; allowed: \"...\" or '...' around a value");
   else
-    TakeWords(t, from, n, word, 1);
+    TypedTakeWords(t, from, n, word, 1);
   free(word);
 }
 
 /* The file's text with a zero behind it, to be freed; NULL and why when it cannot be read. */
-static char *Text(FILE *f, size_t *length, const char **why) {
+static char *TypedFileText(FILE *f, size_t *length, const char **why) {
   char *text = (char *)malloc(MOST_BYTES + 2);
   *why = text ? NULL : "needs too much memory";
   if (!text) return NULL;
@@ -190,7 +191,7 @@ static char *Text(FILE *f, size_t *length, const char **why) {
 }
 
 /* Lines of a text that ends with a zero. */
-static void TakeText(Typed *t, Source *from, char *text, size_t length) {
+static void TypedTakeText(Typed *t, Source *from, char *text, size_t length) {
   char *copy = (char *)malloc(length + 1), *p = text;
   if (!strncmp(p, "\xef\xbb\xbf", 3)) p += 3;
   for (from->number = 1; copy && p <= text + length && !*t->error; from->number++) {
@@ -210,12 +211,12 @@ static void TakeText(Typed *t, Source *from, char *text, size_t length) {
     *p = 0;
     p += crlf ? 2 : 1;
     from->line = line;
-    TakeLine(t, from, strcpy(copy, line));
+    TypedTakeLine(t, from, strcpy(copy, line));
   }
   free(copy);
 }
 
-static void ReadFile(Typed *t, const char *path, const Source *outer) {
+static void TypedReadFile(Typed *t, const char *path, const Source *outer) {
   Source from = {.outer = outer, .name = path};
   const char *why = NULL;
   struct stat status;
@@ -230,26 +231,26 @@ static void ReadFile(Typed *t, const char *path, const Source *outer) {
     for (const Source *s = outer; s && !why; s = s->outer)
       if (s->line && s->device == from.device && s->file == from.file) why = "includes itself";
     if (!why && S_ISDIR(status.st_mode)) why = "is a folder";
-    if (!why) text = Text(f, &length, &why);
+    if (!why) text = TypedFileText(f, &length, &why);
   }
   if (!text && outer && outer->line)
-    Wrong(t, outer, "%s (%s); allowed: a readable file of options", f ? "not read" : "cannot be opened", why);
+    TypedWrong(t, outer, "%s (%s); allowed: a readable file of options", f ? "not read" : "cannot be opened", why);
   else if (!text)
-    Wrong(t, outer ? outer : &(Source){0}, "-options_file %.300s: %s (%s); allowed: a readable file of options", path,
-          f ? "not read" : "cannot be opened", why);
+    TypedWrong(t, outer ? outer : &(Source){0}, "-options_file %.300s: %s (%s); allowed: a readable file of options",
+               path, f ? "not read" : "cannot be opened", why);
   else
-    TakeText(t, &from, text, length);
+    TypedTakeText(t, &from, text, length);
   free(text);
   if (f) fclose(f);
 }
 
 void TypedFile(Typed *t, const char path[]) {
-  ReadFile(t, path, NULL);
+  TypedReadFile(t, path, NULL);
 }
 
 /* PETSc's own file of the user, if there is one, unless the command line says -skip_petscrc. Those of the folder where
    the program starts are not read: it may come from others. */
-static void TakePetscFile(Typed *t, int n, char **word) {
+static void TypedTakePetscFile(Typed *t, int n, char **word) {
   const char *const home = getenv("HOME");
   char path[PETSC_MAX_PATH_LEN];
   struct stat status;
@@ -257,17 +258,17 @@ static void TakePetscFile(Typed *t, int n, char **word) {
     if (!strcasecmp(word[k], "-skip_petscrc")) return;
   (void)snprintf(path, sizeof(path), "%s/.petscrc", home ? home : "");
   t->own = PETSC_TRUE;
-  if (home && !stat(path, &status) && S_ISREG(status.st_mode)) ReadFile(t, path, NULL);
+  if (home && !stat(path, &status) && S_ISREG(status.st_mode)) TypedReadFile(t, path, NULL);
   t->own = PETSC_FALSE;
 }
 
-static void TakeEnvironment(Typed *t) {
+static void TypedTakeEnvironment(Typed *t) {
   const Source from = {.name = "PETSC_OPTIONS"};
   const char *const typed = getenv("PETSC_OPTIONS");
   char *line = typed && !*t->error ? strdup(typed) : NULL;
   for (char *p = line; p && *p; p++)
     if (*p == '\n' || *p == '\r') *p = ' ';
-  if (line) TakeLine(t, &from, line);
+  if (line) TypedTakeLine(t, &from, line);
   free(line);
 }
 
@@ -277,15 +278,15 @@ void TypedCommand(Typed *t, int n, char **word) {
   Typed rest = {0};
   if (!words) abort();
   for (int k = 0; k < n; k++) words[k] = (Word){.text = word[k]};
-  TakeWords(&rest, &from, n, words, -1); /* the command line's own mistakes first */
+  TypedTakeWords(&rest, &from, n, words, -1); /* the command line's own mistakes first */
   (void)snprintf(t->error, sizeof(t->error), "%s", rest.error);
-  if (!*t->error) TakePetscFile(t, n, word);
-  TakeEnvironment(t);
+  if (!*t->error) TypedTakePetscFile(t, n, word);
+  TypedTakeEnvironment(t);
   for (int k = 0; k + 1 < n && !*t->error; k++)
-    if (!strcasecmp(word[k], "-options_file")) ReadFile(t, word[k + 1], NULL);
+    if (!strcasecmp(word[k], "-options_file")) TypedReadFile(t, word[k + 1], NULL);
   for (size_t at = 0; at < rest.used && !*t->error;) {
     const char *name = rest.text + at, *value = name + strlen(name) + 1;
-    Append(t, name, *value ? value + 1 : NULL);
+    TypedAppend(t, name, *value ? value + 1 : NULL);
     at = (size_t)(value + strlen(value) + 1 - rest.text);
   }
   TypedDestroy(&rest);

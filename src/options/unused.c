@@ -16,7 +16,7 @@ static const char *const later[] = {"_ksp_view", "_ksp_converged_reason", "_ksp_
 #define LATER_VIEWERS 4
 
 /* TRUE if PETSc will read the option (given without its dash) after the check. viewer: the option names a viewer. */
-static PetscBool ReadLater(const char *name, PetscBool *viewer) {
+static PetscBool OptionIsReadLater(const char *name, PetscBool *viewer) {
   *viewer = PETSC_FALSE;
   for (size_t k = 0; k < LATE; k++)
     if (!strcasecmp(name, late[k])) return PETSC_TRUE;
@@ -35,7 +35,7 @@ static PetscBool ReadLater(const char *name, PetscBool *viewer) {
 #endif
 
 /* Read now what PETSc reads when the run is over, a viewer or a truth: a mistake in it would be found only then. */
-static PetscErrorCode TryLate(MPI_Comm comm, const char name[], PetscBool is_viewer) {
+static PetscErrorCode OptionTryLate(MPI_Comm comm, const char name[], PetscBool is_viewer) {
   const char *value = NULL;
   PetscErrorCode error;
   PetscViewer viewer = NULL;
@@ -63,7 +63,7 @@ static PetscErrorCode TryLate(MPI_Comm comm, const char name[], PetscBool is_vie
 }
 
 /* Edit distance of two short words (Levenshtein). */
-static PetscInt Distance(const char *a, const char *b) {
+static PetscInt NameDistance(const char *a, const char *b) {
   PetscInt row[128];
   const PetscInt n = (PetscInt)PetscMin(strlen(b), (size_t)127);
   for (PetscInt j = 0; j <= n; j++) row[j] = j;
@@ -81,7 +81,7 @@ static PetscInt Distance(const char *a, const char *b) {
 
 /* TRUE if `name` is the end of a longer name (-rate of -flow_rate) or its beginning (-vesicle_reduced of
    -vesicle_reduced_area). */
-static PetscBool IsPart(const char *name, const char *longer) {
+static PetscBool NameIsPart(const char *name, const char *longer) {
   const size_t n = strlen(name) - 1, m = strlen(longer);
   if (n < 3 || m <= n + 1) return PETSC_FALSE;
   if (longer[m - n - 1] == '_' && !strcmp(longer + m - n, name + 1)) return PETSC_TRUE;
@@ -89,7 +89,7 @@ static PetscBool IsPart(const char *name, const char *longer) {
 }
 
 /* Number of the first character after the words with which two names begin alike. */
-static size_t Alike(const char *a, const char *b) {
+static size_t NameAlike(const char *a, const char *b) {
   size_t same = 0;
   for (size_t k = 0; a[k] && a[k] == b[k]; k++)
     if (a[k] == '_') same = k + 1;
@@ -98,14 +98,14 @@ static size_t Alike(const char *a, const char *b) {
 
 /* The known name that is nearest; NULL: no name is near. One letter may be wrong, and one in four of the letters that
    follow the common words. */
-static const char *Meant(const OptionTable *t, const char *const others[], const char *name) {
+static const char *NameMeant(const OptionTable *t, const char *const others[], const char *name) {
   const char *best = NULL;
   PetscInt least = PETSC_MAX_INT;
   for (PetscInt i = 0; i < t->n || others[i - t->n]; i++) {
     const char *known = i < t->n ? t->row[i].name : others[i - t->n];
-    const size_t same = Alike(name, known);
+    const size_t same = NameAlike(name, known);
     const PetscInt far = 1 + (PetscInt)strlen(name + same) / 4;
-    const PetscInt distance = IsPart(name, known) ? 0 : Distance(name + same, known + same);
+    const PetscInt distance = NameIsPart(name, known) ? 0 : NameDistance(name + same, known + same);
     if (distance > far || distance >= least) continue;
     least = distance;
     best = known;
@@ -114,7 +114,7 @@ static const char *Meant(const OptionTable *t, const char *const others[], const
 }
 
 /* TRUE if a name has these words as whole words, as -domain_inflow_x has inflow. */
-static PetscBool HasWords(const char *name, const char *words) {
+static PetscBool NameHasWords(const char *name, const char *words) {
   const size_t n = strlen(words);
   for (const char *p = strstr(name, words); p; p = strstr(p + 1, words))
     if ((p[-1] == '_' || p[-1] == '-') && (!p[n] || p[n] == '_')) return PETSC_TRUE;
@@ -123,14 +123,14 @@ static PetscBool HasWords(const char *name, const char *words) {
 
 /* TRUE if a name is among the names of a suggestion, such as "-nx *grid". A word after * counts only if no name of the
    table has the word. */
-static PetscBool IsAmong(const OptionTable *t, const char *names, const char *name) {
+static PetscBool NameIsAmong(const OptionTable *t, const char *names, const char *name) {
   for (const char *p = names; *p; p += strspn(p, " ")) {
     const size_t n = strcspn(p, " ");
     char one[64];
     PetscBool found;
     (void)snprintf(one, sizeof(one), "%.*s", (int)n, p);
-    found = *one == '*' ? HasWords(name, one + 1) : !strcmp(one, name);
-    for (PetscInt i = 0; i < t->n && *one == '*' && found; i++) found = !HasWords(t->row[i].name, one + 1);
+    found = *one == '*' ? NameHasWords(name, one + 1) : !strcmp(one, name);
+    for (PetscInt i = 0; i < t->n && *one == '*' && found; i++) found = !NameHasWords(t->row[i].name, one + 1);
     if (found) return PETSC_TRUE;
     p += n;
   }
@@ -138,7 +138,7 @@ static PetscBool IsAmong(const OptionTable *t, const char *names, const char *na
 }
 
 /* Find out whether the options in force are those that a solver needs: "-name value". */
-static PetscErrorCode HasOwner(const OptionTable *t, const void *values, const char need[], PetscBool *has) {
+static PetscErrorCode OptionHasOwner(const OptionTable *t, const void *values, const char need[], PetscBool *has) {
   const size_t n = strcspn(need, " ");
   char name[64], value[64] = "";
   PetscInt i;
@@ -151,25 +151,25 @@ static PetscErrorCode HasOwner(const OptionTable *t, const void *values, const c
 }
 
 /* An option that nothing has read, with its dash. */
-static PetscErrorCode Refuse(const OptionTable *t, const void *values, const char *const others[],
-                             const OptionOwner owners[], const OptionSuggestion *suggestion, const char name[],
-                             const char value[]) {
+static PetscErrorCode OptionRefuse(const OptionTable *t, const void *values, const char *const others[],
+                                   const OptionOwner owners[], const OptionSuggestion *suggestion, const char name[],
+                                   const char value[]) {
   const char *meant;
   PetscBool known = PETSC_FALSE, has = PETSC_TRUE;
   PetscInt k = 0;
   PetscFunctionBeginUser;
   while (owners[k].prefix && strncmp(owners[k].prefix, name, strlen(owners[k].prefix))) k++;
-  if (owners[k].prefix) PetscCall(HasOwner(t, values, owners[k].need, &has));
+  if (owners[k].prefix) PetscCall(OptionHasOwner(t, values, owners[k].need, &has));
   for (PetscInt i = 0; others[i] && !known; i++) PetscCall(PetscStrcmp(others[i], name, &known));
   PetscCheck(has, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", name, value,
              owners[k].need);
   PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", name, value);
-  while (suggestion->names && !IsAmong(t, suggestion->names, name)) suggestion++;
+  while (suggestion->names && !NameIsAmong(t, suggestion->names, name)) suggestion++;
   PetscCheck(!suggestion->names, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: no such option; %s (-allow_unused_options goes on)", name, value, suggestion->say);
-  meant = Meant(t, others, name);
+  meant = NameMeant(t, others, name);
   PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: no such option; %s is meant? (-allow_unused_options goes on)", name, value, meant);
   SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
@@ -178,9 +178,9 @@ static PetscErrorCode Refuse(const OptionTable *t, const void *values, const cha
 
 PetscErrorCode OptionsTryLate(const OptionTable *t) {
   PetscFunctionBeginUser;
-  PetscCall(TryLate(t->comm, "-log_view", PETSC_TRUE));
-  PetscCall(TryLate(t->comm, "-options_left", PETSC_FALSE));
-  PetscCall(TryLate(t->comm, "-options_view", PETSC_FALSE));
+  PetscCall(OptionTryLate(t->comm, "-log_view", PETSC_TRUE));
+  PetscCall(OptionTryLate(t->comm, "-options_left", PETSC_FALSE));
+  PetscCall(OptionTryLate(t->comm, "-options_view", PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -194,13 +194,13 @@ PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, cons
     char name[128];
     PetscBool viewer;
     PetscCall(PetscSNPrintf(name, sizeof(name), "-%s", names[i]));
-    const PetscBool later_read = ReadLater(names[i], &viewer);
-    if (viewer) PetscCall(TryLate(t->comm, name, PETSC_TRUE));
+    const PetscBool later_read = OptionIsReadLater(names[i], &viewer);
+    if (viewer) PetscCall(OptionTryLate(t->comm, name, PETSC_TRUE));
     if (later_read) continue;
     PetscCall(PetscStrncpy(unused, name, sizeof(unused)));
     if (texts[i]) PetscCall(PetscStrncpy(value, texts[i], sizeof(value)));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &texts));
-  if (*unused) PetscCall(Refuse(t, values, others, owners, suggestions, unused, value));
+  if (*unused) PetscCall(OptionRefuse(t, values, others, owners, suggestions, unused, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -23,7 +23,7 @@ static const Calibrated calibrated[] = {{1e-1, 1e-2, 3.1e-2, 1e-4, 3.6e-5, 4, 2.
                                         {1e-3, 3e-5, 1.6e-4, 1e-5, 6.3e-6, 4, 2.6e-7},
                                         {1e-4, 7e-6, 4.1e-5, 1e-6, 4.4e-7, 2, 2.9e-7}};
 
-static const Calibrated *Row(Scene s) {
+static const Calibrated *CalibratedRow(Scene s) {
   const PetscInt last = (PetscInt)(sizeof(calibrated) / sizeof(calibrated[0])) - 1;
   PetscInt row = 0;
   while (row < last && calibrated[row].wanted > s->scheme.wanted * (1 + 1e-9)) row++;
@@ -47,7 +47,7 @@ static const struct {
 } films[] = {{WIDE, 1e-5}, {1.5, 2e-4}, {1, 4e-3}, {.7, 1e-2}, {.5, 4e-2}, {.3, 1}};
 
 /* Rate at which the flow shortens vesicle v along its length (1/time); 0 if the flow does not, or is not known. */
-static PetscReal Compression(Scene scene, PetscInt v) {
+static PetscReal VesicleCompression(Scene scene, PetscInt v) {
   const Shape *s = &scene->shape;
   PetscReal mean[2], xx = 0, yy = 0, xy = 0, G[2][2];
   if (scene->flow.type == FLOW_CUSTOM) return 0;
@@ -66,10 +66,11 @@ static PetscReal Compression(Scene scene, PetscInt v) {
 
 /* nu R0^3/c_b times the rate at which the flow shortens a vesicle of the start along its length, the largest; 0 where
    it is so small that no vesicle wrinkles. */
-static PetscReal Squeeze(Scene scene) {
+static PetscReal VesicleSqueeze(Scene scene) {
   PetscReal largest = 0;
   for (PetscInt v = 0; v < scene->shape.vesicles; v++)
-    if (scene->membrane.each[v] > 0) largest = PetscMax(largest, Compression(scene, v) * SceneMembraneTime(scene, v));
+    if (scene->membrane.each[v] > 0)
+      largest = PetscMax(largest, VesicleCompression(scene, v) * SceneMembraneTime(scene, v));
   return largest > SQUEEZED ? largest : 0;
 }
 
@@ -84,7 +85,7 @@ static PetscReal FilmError(PetscReal spacings) {
 
 /* The thinnest film of the start, in marker spacings (2: none is thinner), and the error that it leaves, of its
    thickness over R0. */
-static PetscErrorCode ThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
+static PetscErrorCode StartThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
   const Shape *s = &scene->shape;
   const CurveRoom room = SceneRoom(scene);
   const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
@@ -102,10 +103,10 @@ static PetscErrorCode ThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *
 }
 
 /* Print what the thinnest film of the start leaves. */
-static PetscErrorCode ReportFilm(Scene scene) {
+static PetscErrorCode AutoReportFilm(Scene scene) {
   PetscReal spacings, error;
   PetscFunctionBeginUser;
-  PetscCall(ThinnestFilm(scene, &spacings, &error));
+  PetscCall(StartThinnestFilm(scene, &spacings, &error));
   if (error > 0)
     PetscCall(PetvesSay(scene->comm, "  thinnest film: %.2g marker spacings, which leaves up to %.1g of R0: %s\n",
                         (double)spacings, (double)error,
@@ -114,12 +115,12 @@ static PetscErrorCode ReportFilm(Scene scene) {
 }
 
 /* Find out whether the markers resolve the shapes and the films of the start. */
-static PetscErrorCode Resolved(Scene scene, PetscBool *resolved) {
+static PetscErrorCode StartIsResolved(Scene scene, PetscBool *resolved) {
   const Shape *s = &scene->shape;
   const PetscReal tail = PetscMin(MOST_TAIL, TAIL * PetscSqrtReal(scene->scheme.wanted / 1e-3));
   PetscReal spacings, error;
   PetscFunctionBeginUser;
-  PetscCall(ThinnestFilm(scene, &spacings, &error));
+  PetscCall(StartThinnestFilm(scene, &spacings, &error));
   *resolved = error < 0.5 * scene->scheme.wanted ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt v = 0; v < s->vesicles && *resolved; v++) {
     Spectral spectral;
@@ -145,9 +146,9 @@ PetscErrorCode SceneChooseMarkers(Draft scene) {
     most = PetscMin(most, (PetscInt)(length / (NEAR_LEAST_SPACING * h)));
   }
   most = PetscMin(most, MOST_FINER * n);
-  const PetscInt least = Squeeze(scene) > 0 ? PetscMin(most, 3 * n / 2) - 1 : 0;
+  const PetscInt least = VesicleSqueeze(scene) > 0 ? PetscMin(most, 3 * n / 2) - 1 : 0;
   for (;;) {
-    PetscCall(Resolved(scene, &resolved));
+    PetscCall(StartIsResolved(scene, &resolved));
     if ((resolved && n >= least) || n >= most - 1) break;
     n = PetscMin((PetscInt)(GROWTH * n), most);
     n -= 1 - n % 2;
@@ -178,30 +179,30 @@ static PetscErrorCode SuggestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_
 #define WRINKLES_LEAVE 0.3
 
 static PetscErrorCode SuggestTolerance(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
-  const PetscReal chi = Squeeze(s), wanted = s->scheme.wanted;
+  const PetscReal chi = VesicleSqueeze(s), wanted = s->scheme.wanted;
   if (s->time.adapt == ADAPT_ERROR && chi > 0)
     (void)snprintf(why, AUTO_TEXT, "a vesicle is compressed (chi = %.2g) and wrinkles: leaves up to %.1e", (double)chi,
                    (double)(WRINKLES_LEAVE * wanted));
   else if (s->time.adapt == ADAPT_ERROR)
-    (void)snprintf(why, AUTO_TEXT, "steps leave up to %.1e", (double)Row(s)->of_steps);
-  return AutoNumber("%g", chi > 0 ? wanted / OF_WRINKLES : Row(s)->adapt_tol, value);
+    (void)snprintf(why, AUTO_TEXT, "steps leave up to %.1e", (double)CalibratedRow(s)->of_steps);
+  return AutoNumber("%g", chi > 0 ? wanted / OF_WRINKLES : CalibratedRow(s)->adapt_tol, value);
 }
 
 /* The largest step is that for the error at rest, but not larger than the flow bears. */
 static PetscErrorCode SuggestLargestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
-  const PetscReal rest = SceneRestTime(s), flow = SceneFlowStep(s), own = Row(s)->max_step;
+  const PetscReal rest = SceneRestTime(s), flow = SceneFlowStep(s), own = CalibratedRow(s)->max_step;
   const PetscBool bends = s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (bends && flow < own * rest)
     (void)snprintf(why, AUTO_TEXT, "what this flow bears");
   else if (bends)
     (void)snprintf(why, AUTO_TEXT, "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest", (double)own,
-                   (double)Row(s)->of_rest);
+                   (double)CalibratedRow(s)->of_rest);
   return AutoNumber("%.6g", rest < PETSC_MAX_REAL ? PetscMin(own * rest, flow) : rest, value);
 }
 
 static PetscErrorCode SuggestSolver(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   (void)value;
-  (void)snprintf(why, AUTO_TEXT, "the solver leaves up to %.1e", (double)Row(s)->of_solver);
+  (void)snprintf(why, AUTO_TEXT, "the solver leaves up to %.1e", (double)CalibratedRow(s)->of_solver);
   return PETSC_SUCCESS;
 }
 
@@ -240,7 +241,7 @@ static const Setting settings[AUTO_SETTINGS] = {
   {"-domain_cells", AUTO_DOMAIN, .suggest = SceneSuggestCells}};
 /* clang-format on */
 
-static PetscErrorCode CheckWanted(Scene s) {
+static PetscErrorCode AutoCheckWanted(Scene s) {
   const PetscReal wanted = s->scheme.wanted;
   PetscFunctionBeginUser;
   PetscCheck(wanted >= 1e-4 && wanted <= 0.1, s->comm, PETSC_ERR_USER_INPUT,
@@ -253,8 +254,8 @@ static PetscErrorCode CheckWanted(Scene s) {
 PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
   PetscFunctionBeginUser;
   if (s->scheme.wanted == 0 || (stage == AUTO_STEPS && !s->shape.vesicles)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CheckWanted(s));
-  s->coupling.ksp_rtol = Row(s)->ksp_rtol;
+  PetscCall(AutoCheckWanted(s));
+  s->coupling.ksp_rtol = CalibratedRow(s)->ksp_rtol;
   for (int k = 0; k < AUTO_SETTINGS; k++) {
     const Setting *own = &settings[k];
     char value[AUTO_TEXT] = "", *why = s->scheme.reason[k];
@@ -271,7 +272,7 @@ PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
 }
 
 /* Numbers, with commas between them, to six digits. */
-static void Shorten(char value[AUTO_TEXT]) {
+static void AutoShorten(char value[AUTO_TEXT]) {
   char text[AUTO_TEXT];
   size_t used = 0;
   if (!strchr(value, '.')) return;
@@ -284,7 +285,7 @@ static void Shorten(char value[AUTO_TEXT]) {
 }
 
 /* A line for a setting: its name, value, and reason, or that it is the user's. */
-static PetscErrorCode ReportSetting(Scene s, const char name[], const char why[]) {
+static PetscErrorCode AutoReportSetting(Scene s, const char name[], const char why[]) {
   char value[AUTO_TEXT];
   PetscBool given = SceneGiven(s, name);
   const PetscInt i = OptionFind(&s->options, name);
@@ -296,7 +297,7 @@ static PetscErrorCode ReportSetting(Scene s, const char name[], const char why[]
     PetscCall(PetscOptionsGetString(NULL, NULL, name, value, sizeof(value), &given));
   }
   if (!*why && !given) PetscFunctionReturn(PETSC_SUCCESS);
-  Shorten(value);
+  AutoShorten(value);
   PetscCall(PetvesSay(s->comm, "  %-20s %-8s %s\n", name, value, given ? "yours" : why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -305,7 +306,7 @@ static PetscErrorCode ReportSetting(Scene s, const char name[], const char why[]
 #define BLOCK_SECONDS 3.5e-9 /* seconds of a block over the third power of the markers */
 
 /* Warn of vesicles whose dense blocks in the solve take long to make. */
-static PetscErrorCode ReportMarkers(Scene scene) {
+static PetscErrorCode AutoReportMarkers(Scene scene) {
   PetscInt most = 0;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < scene->shape.vesicles && !SceneIsProjection(scene); v++)
@@ -325,11 +326,11 @@ PetscErrorCode SceneReport(Scene s) {
   if (s->scheme.wanted > 0 && s->shape.vesicles) {
     PetscCall(PetvesSay(s->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
                         (double)s->scheme.wanted));
-    for (int k = 0; k < AUTO_SETTINGS; k++) PetscCall(ReportSetting(s, settings[k].name, s->scheme.reason[k]));
-    PetscCall(ReportFilm(s));
+    for (int k = 0; k < AUTO_SETTINGS; k++) PetscCall(AutoReportSetting(s, settings[k].name, s->scheme.reason[k]));
+    PetscCall(AutoReportFilm(s));
     PetscCall(SceneReportGrid(s));
   }
   if (*s->warning) PetscCall(PetvesSay(s->comm, "petves: warning: %s\n", s->warning));
-  PetscCall(ReportMarkers(s));
+  PetscCall(AutoReportMarkers(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

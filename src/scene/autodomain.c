@@ -18,13 +18,13 @@
 
 /* TRUE if -scheme_auto may choose the box: not in a channel, under gravity, among obstacles, with a packing, or in a
    custom flow. */
-static PetscBool LeavesBox(Scene s) {
+static PetscBool BoxIsOpen(Scene s) {
   const PetscInt flow = s->flow.type;
   if (flow == FLOW_POISEUILLE || flow == FLOW_CUSTOM || s->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
   return s->vesicles.packing == 0 && s->gravity.g.n == 2 && !SceneHasGravity(s) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscErrorCode CountVesicles(Scene s, PetscInt *count) {
+static PetscErrorCode SceneCountVesicles(Scene s, PetscInt *count) {
   Curve *curve;
   PetscFunctionBeginUser;
   *count = s->vesicles.count;
@@ -36,12 +36,12 @@ static PetscErrorCode CountVesicles(Scene s, PetscInt *count) {
 }
 
 /* Find out whether the scene asks for something that unbounded fluid does not have. */
-static PetscErrorCode NeedsGrid(Scene s, PetscBool *needs) {
+static PetscErrorCode SceneNeedsGrid(Scene s, PetscBool *needs) {
   static const char *const backends[] = {"-helmholtz_type", "-poisson_type"};
   const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part ? PETSC_TRUE : PETSC_FALSE;
   PetscInt count;
   PetscFunctionBeginUser;
-  PetscCall(CountVesicles(s, &count));
+  PetscCall(SceneCountVesicles(s, &count));
   *needs = strcmp(s->scheme.type, "coupled") || s->coupling.near_field != NEAR_EXACT || box_part ||
                    s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE ||
                    count > SCENE_MOST_FREE
@@ -60,9 +60,9 @@ PetscErrorCode SceneSuggestBoundaryX(Draft s, char value[AUTO_TEXT], char why[AU
   PetscBool needs = PETSC_TRUE;
   PetscFunctionBeginUser;
   if (!SceneGiven(s, "-domain_box")) PetscCall(PetscStrncpy(why, "the default", AUTO_TEXT));
-  if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_y") || s->vesicles.shape == SHAPE_NONE || !LeavesBox(s))
+  if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_y") || s->vesicles.shape == SHAPE_NONE || !BoxIsOpen(s))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NeedsGrid(s, &needs));
+  PetscCall(SceneNeedsGrid(s, &needs));
   if (!needs) {
     PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
     PetscCall(PetscStrncpy(why, UNBOUNDED, AUTO_TEXT));
@@ -88,7 +88,7 @@ typedef struct {
   PetscReal small, large, around[4], gap;
 } Extent;
 
-static PetscErrorCode Measure(Draft s, Extent *e) {
+static PetscErrorCode ExtentMeasure(Draft s, Extent *e) {
   const PetscReal *box = s->domain.box.v;
   Kinds kinds;
   Pose *pose;
@@ -114,12 +114,12 @@ static PetscErrorCode Measure(Draft s, Extent *e) {
 }
 
 /* x with two digits, rounded up (1), or to the nearest (0). */
-static PetscReal Rounded(PetscReal x, PetscReal unit, PetscBool up) {
+static PetscReal BoxRounded(PetscReal x, PetscReal unit, PetscBool up) {
   return unit * (up ? PetscCeilReal(x / unit * (1 - 1e-9)) : PetscFloorReal(x / unit + 0.5));
 }
 
 /* Radii from a vesicle's middle to the sides of a box whose images leave half of the error. */
-static PetscReal Reach(Scene s, PetscInt vesicles) {
+static PetscReal BoxReach(Scene s, PetscInt vesicles) {
   return PetscSqrtReal(2 * OF_IMAGES * vesicles / s->scheme.wanted);
 }
 
@@ -130,23 +130,23 @@ PetscErrorCode SceneSuggestBox(Draft s, char value[AUTO_TEXT], char why[AUTO_TEX
   PetscReal side[2], middle[2];
   Extent e;
   PetscFunctionBeginUser;
-  if (!free && !LeavesBox(s))
+  if (!free && !BoxIsOpen(s))
     PetscCall(PetscStrncpy(why, "the default: walls are part of this scene, the box is yours to give", AUTO_TEXT));
-  if (s->vesicles.shape == SHAPE_NONE || !(free || LeavesBox(s))) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Measure(s, &e));
+  if (s->vesicles.shape == SHAPE_NONE || !(free || BoxIsOpen(s))) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ExtentMeasure(s, &e));
   if (free)
     PetscCall(PetscSNPrintf(why, AUTO_TEXT, "the window of the fields, %d R0 around the vesicles", WINDOW));
   else
     PetscCall(PetscSNPrintf(why, AUTO_TEXT, "%.3g R0 around the vesicles: its images leave up to %.1e",
-                            (double)Reach(s, e.vesicles), (double)(s->scheme.wanted / 2)));
+                            (double)BoxReach(s, e.vesicles), (double)(s->scheme.wanted / 2)));
   const PetscReal wide = PetscMax(e.around[1] - e.around[0], e.around[3] - e.around[2]) / 2;
-  const PetscReal half = wide + (free ? WINDOW : Reach(s, e.vesicles)) * e.large;
+  const PetscReal half = wide + (free ? WINDOW : BoxReach(s, e.vesicles)) * e.large;
   const PetscReal unit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(half)) - 1);
   for (int d = 0; d < 2; d++) {
     const PetscInt n = s->domain.cells.v[d], other = s->domain.cells.v[1 - d];
     const PetscBool longer = SceneGiven(s, "-domain_cells") && n > other ? PETSC_TRUE : PETSC_FALSE;
-    side[d] = Rounded(half, unit, PETSC_TRUE) * (longer ? (PetscReal)n / other : 1);
-    middle[d] = Rounded((e.around[2 * d] + e.around[2 * d + 1]) / 2, unit, PETSC_FALSE);
+    side[d] = BoxRounded(half, unit, PETSC_TRUE) * (longer ? (PetscReal)n / other : 1);
+    middle[d] = BoxRounded((e.around[2 * d] + e.around[2 * d + 1]) / 2, unit, PETSC_FALSE);
   }
   PetscCall(PetscSNPrintf(value, AUTO_TEXT, "%.14g,%.14g,%.14g,%.14g", (double)(middle[0] - side[0]),
                           (double)(middle[0] + side[0]), (double)(middle[1] - side[1]), (double)(middle[1] + side[1])));
@@ -154,7 +154,7 @@ PetscErrorCode SceneSuggestBox(Draft s, char value[AUTO_TEXT], char why[AUTO_TEX
 }
 
 /* Edge of the largest cell that the error allows; in unbounded fluid the edge of the cells of the fields. */
-static PetscReal LargestCell(Scene s, const Extent *e) {
+static PetscReal GridLargestCell(Scene s, const Extent *e) {
   const PetscReal *box = s->domain.box.v, across = PetscMin(box[1] - box[0], box[3] - box[2]);
   const PetscReal finer = s->obstacles.shape == OBSTACLE_NONE ? 1 : BESIDE_OBSTACLES;
   if (FluidSpecIsFree(&s->fluid)) return PetscMax(e->small / WINDOW_CELLS, across / MOST_WINDOW);
@@ -164,7 +164,7 @@ static PetscReal LargestCell(Scene s, const Extent *e) {
 
 PetscErrorCode SceneSuggestCells(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal *box = s->domain.box.v;
-  const PetscBool free = FluidSpecIsFree(&s->fluid), by_images = !free && !SceneGiven(s, "-domain_box") && LeavesBox(s);
+  const PetscBool free = FluidSpecIsFree(&s->fluid), by_images = !free && !SceneGiven(s, "-domain_box") && BoxIsOpen(s);
   PetscInt cells[2] = {0, 0};
   Extent e;
   PetscFunctionBeginUser;
@@ -174,8 +174,8 @@ PetscErrorCode SceneSuggestCells(Draft s, char value[AUTO_TEXT], char why[AUTO_T
     PetscCall(PetscSNPrintf(why, AUTO_TEXT, "the fewest square ones that are enough%s",
                             s->obstacles.shape != OBSTACLE_NONE ? ", twice as many beside obstacles" : ""));
   if (s->vesicles.shape == SHAPE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Measure(s, &e));
-  const PetscReal h = LargestCell(s, &e);
+  PetscCall(ExtentMeasure(s, &e));
+  const PetscReal h = GridLargestCell(s, &e);
   const PetscReal across = PetscCeilReal(PetscMax(box[1] - box[0], box[3] - box[2]) / h * (1 - 1e-9));
   PetscCheck(!by_images || across <= MOST_BOX, s->comm, PETSC_ERR_USER_INPUT,
              "-scheme_auto %g: a box so large that its images leave half of it takes %g cells across; allowed: "

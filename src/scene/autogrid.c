@@ -53,14 +53,14 @@ static PetscReal WallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
 }
 
 /* TRUE if n has no prime factor above 5, so that Fourier transforms are fast. */
-static PetscBool IsSmooth(PetscInt n) {
+static PetscBool CellsAreSmooth(PetscInt n) {
   for (PetscInt prime = 2; prime <= 5; prime++)
     while (n % prime == 0) n /= prime;
   return n == 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The least whole numbers in proportion to the sides of a box; false: none up to the most cells across. */
-static PetscBool Sides(const PetscReal box[4], PetscInt sides[2]) {
+static PetscBool BoxSides(const PetscReal box[4], PetscInt sides[2]) {
   const PetscReal ratio = (box[1] - box[0]) / (box[3] - box[2]);
   for (sides[1] = 1; sides[1] * PetscMax(ratio, 1) <= SCENE_MOST_ACROSS; sides[1]++) {
     sides[0] = (PetscInt)PetscFloorReal(sides[1] * ratio + 0.5);
@@ -73,19 +73,19 @@ static PetscBool Sides(const PetscReal box[4], PetscInt sides[2]) {
 
 PetscBool SceneSquareCells(const PetscReal box[4], PetscReal h, PetscInt cells[2]) {
   PetscInt sides[2];
-  if (!Sides(box, sides)) return PETSC_FALSE;
+  if (!BoxSides(box, sides)) return PETSC_FALSE;
   const PetscReal wanted = PetscMax((box[1] - box[0]) / (h * sides[0]) * (1 - 1e-9),
                                     (PetscReal)LEAST_ACROSS / PetscMin(sides[0], sides[1]));
   if (wanted * PetscMax(sides[0], sides[1]) > SCENE_MOST_ACROSS) return PETSC_FALSE;
   PetscInt times = (PetscInt)PetscCeilReal(wanted);
-  while (!IsSmooth(times)) times++;
+  while (!CellsAreSmooth(times)) times++;
   for (int d = 0; d < 2; d++) cells[d] = sides[d] * times;
   return PetscMax(cells[0], cells[1]) <= SCENE_MOST_ACROSS ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Cells a R0 up to which one is taken for a wall: what has the box part was measured to 12, the rest of second order.
  */
-static int Finest(AutoFluid fluid) {
+static int GridFinest(AutoFluid fluid) {
   return fluid == AUTO_BOX_PART ? 16 : 24;
 }
 
@@ -96,29 +96,29 @@ PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], PetscReal h, P
     const PetscReal now = (box[1] - box[0]) / cells[0];
     if (WallError(fluid, gap / R0, now / R0) <= error) return PETSC_TRUE;
     next = 0.999 * now;
-    if (next < R0 / Finest(fluid)) break;
+    if (next < R0 / GridFinest(fluid)) break;
   }
   return PETSC_FALSE;
 }
 
 #define MARKERS 45
 
-static PetscInt FewestMarkers(const Shape *shape) {
+static PetscInt ShapeFewestMarkers(const Shape *shape) {
   PetscInt fewest = PETSC_MAX_INT;
   for (PetscInt v = 0; v < shape->vesicles; v++) fewest = PetscMin(fewest, shape->start[v + 1] - shape->start[v]);
   return fewest;
 }
 
 /* The least distance of a marker from a wall; PETSC_MAX_REAL without walls. */
-static PetscReal WallGap(Scene scene) {
+static PetscReal ShapeWallGap(Scene scene) {
   const CurveRoom room = SceneRoom(scene);
   PetscInt side;
   return CurveWallGap(scene->shape.start[scene->shape.vesicles], scene->shape.X, &room, &side);
 }
 
 /* Print the error of walls that are near to a vesicle, and the grid that would be enough. */
-static PetscErrorCode ReportWall(Scene scene, AutoFluid fluid) {
-  const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), gap = WallGap(scene);
+static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
+  const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), gap = ShapeWallGap(scene);
   const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0, wanted = scene->scheme.wanted;
   char leaves[64] = "more than was measured", what[128] = "enough";
   PetscInt cells[2];
@@ -134,7 +134,7 @@ static PetscErrorCode ReportWall(Scene scene, AutoFluid fluid) {
                             (double)wanted, cells[0], cells[1]));
   else
     PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, and for any grid up to R0/h = %d", (double)wanted,
-                            Finest(fluid)));
+                            GridFinest(fluid)));
   PetscCall(
       PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -143,7 +143,7 @@ static PetscErrorCode ReportWall(Scene scene, AutoFluid fluid) {
 PetscErrorCode SceneReportGrid(Scene scene) {
   const PetscReal R0 = SceneSmallestRadius(scene), cells = R0 / FluidSpecCellSize(&scene->fluid);
   const PetscReal wanted = scene->scheme.wanted;
-  const PetscBool many = FewestMarkers(&scene->shape) >= MARKERS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool many = ShapeFewestMarkers(&scene->shape) >= MARKERS ? PETSC_TRUE : PETSC_FALSE;
   const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
   const PetscReal error = GridError(fluid, cells, many), enough = SceneCellsFor(fluid, wanted, many);
   char leaves[64] = "coarser than any that was measured", what[256] = "enough";
@@ -166,6 +166,6 @@ PetscErrorCode SceneReportGrid(Scene scene) {
         (double)wanted, (double)enough, finer[0], finer[1],
         !many && GridError(fluid, cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
   PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g, %s: %s\n", (double)cells, leaves, what));
-  PetscCall(ReportWall(scene, fluid));
+  PetscCall(AutoReportWall(scene, fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

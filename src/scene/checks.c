@@ -47,7 +47,7 @@ PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscI
 }
 
 /* Lists of a fixed length. */
-static PetscErrorCode CheckLengths(Scene scene) {
+static PetscErrorCode SceneCheckLengths(Scene scene) {
   const struct {
     const char *name;
     PetscInt n, wanted;
@@ -85,7 +85,8 @@ PetscErrorCode SceneCheckCells(Scene scene) {
 }
 
 /* A list has `each` numbers a vesicle, or (shared) `each` for all of them. */
-static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscBool shared) {
+static PetscErrorCode SceneCheckVesicleList(Scene scene, const char name[], PetscInt n, PetscInt each,
+                                            PetscBool shared) {
   PetscFunctionBeginUser;
   PetscCheck(n == each * (PetscInt64)scene->vesicles.count || (shared && n == each), scene->comm, PETSC_ERR_USER_INPUT,
              "%s: %" PetscInt_FMT " numbers given; allowed: %" PetscInt_FMT " for each of -vesicle_count %" PetscInt_FMT
@@ -96,7 +97,7 @@ static PetscErrorCode CheckList(Scene scene, const char name[], PetscInt n, Pets
 
 /* A list that says what vesicles are has `each` numbers for all of them, a vesicle, or with a mixture a kind; packed
    vesicles have no numbers by which a list could name them. */
-static PetscErrorCode CheckKinds(Scene scene, const char name[], PetscInt n, PetscInt each) {
+static PetscErrorCode SceneCheckKinds(Scene scene, const char name[], PetscInt n, PetscInt each) {
   const PetscInt kinds = scene->vesicles.mixture.n;
   PetscFunctionBeginUser;
   if (scene->vesicles.shape == SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS); /* their number is known later */
@@ -108,36 +109,36 @@ static PetscErrorCode CheckKinds(Scene scene, const char name[], PetscInt n, Pet
              "%s: %" PetscInt_FMT " numbers given with -vesicle_packing; allowed: %" PetscInt_FMT
              " for all, or an entry for each kind of -vesicle_mixture",
              name, n, each);
-  if (kinds == 1) PetscCall(CheckList(scene, name, n, each, PETSC_TRUE));
+  if (kinds == 1) PetscCall(SceneCheckVesicleList(scene, name, n, each, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Check the lists of vesicles: a list has one entry for all vesicles, one a vesicle, or one a kind. */
-static PetscErrorCode CheckVesicleLists(Scene scene) {
+static PetscErrorCode SceneCheckVesicleLists(Scene scene) {
   const SceneVesicles *own = &scene->vesicles;
   PetscReal sum = 0;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < own->mixture.n; k++) sum += own->mixture.v[k];
   PetvesCheck(PetscAbsReal(sum - 1) < 1e-6, scene->comm,
               "-vesicle_mixture: its parts add up to %g; allowed: parts that add up to 1", (double)sum);
-  PetscCall(CheckKinds(scene, "-vesicle_semi_axes", own->axes.n, 2));
-  PetscCall(CheckKinds(scene, "-vesicle_area", own->area.n, 1));
-  PetscCall(CheckKinds(scene, "-vesicle_reduced_area", own->reduced_area.n, 1));
-  PetscCall(CheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-vesicle_semi_axes", own->axes.n, 2));
+  PetscCall(SceneCheckKinds(scene, "-vesicle_area", own->area.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-vesicle_reduced_area", own->reduced_area.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
   for (PetscInt k = 0; k < own->reduced_area.n; k++)
     PetvesCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
                 scene->comm, "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9",
                 (double)own->reduced_area.v[k]);
   if (own->shape == SHAPE_FILE || own->packing > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CheckList(scene, "-vesicle_center", own->center.n, 2, PETSC_FALSE));
-  PetscCall(CheckList(scene, "-vesicle_angle", own->angle.n, 1, PETSC_TRUE));
+  PetscCall(SceneCheckVesicleList(scene, "-vesicle_center", own->center.n, 2, PETSC_FALSE));
+  PetscCall(SceneCheckVesicleList(scene, "-vesicle_angle", own->angle.n, 1, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* clang-format off */
 /* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
    coupled scheme, whose near field needs no projection step. */
-static PetscErrorCode CheckScheme(Scene s) {
+static PetscErrorCode SceneCheckScheme(Scene s) {
   const PetscBool split = !strcmp(s->scheme.type, "split"), penalty = !strcmp(s->scheme.type, "penalty"),
                   paper = split || penalty, spectral = s->membrane.derivative == DERIVATIVE_SPECTRAL,
                   exact = s->coupling.near_field == NEAR_EXACT;
@@ -177,7 +178,7 @@ static PetscErrorCode CheckScheme(Scene s) {
 }
 
 /* The lists that the rules read have been checked for their lengths. */
-static PetscErrorCode CheckFlow(Scene s) {
+static PetscErrorCode SceneCheckFlow(Scene s) {
   const PetscReal *b = s->domain.box.v, *u = s->flow.velocity.v;
   const PetscInt *bc = s->fluid.bc, type = s->flow.type;
   const PetscBool total = s->fluid.form == FORM_TOTAL, moved = total && type != FLOW_QUIESCENT;
@@ -203,7 +204,7 @@ static PetscErrorCode CheckFlow(Scene s) {
   return REFUSE(s, rules);
 }
 
-static PetscErrorCode CheckVesicles(Scene s) {
+static PetscErrorCode SceneCheckVesicles(Scene s) {
   const SceneVesicles *own = &s->vesicles;
   const PetscBool axes = SceneGiven(s, "-vesicle_semi_axes"), area = SceneGiven(s, "-vesicle_area"),
                   by_area = area || SceneGiven(s, "-vesicle_reduced_area");
@@ -229,7 +230,7 @@ static PetscErrorCode CheckVesicles(Scene s) {
      "-output_dir: empty; allowed: a folder's name"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, shapes));
-  PetscCall(CheckVesicleLists(s));
+  PetscCall(SceneCheckVesicleLists(s));
   PetscCall(REFUSE(s, markers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -237,10 +238,10 @@ static PetscErrorCode CheckVesicles(Scene s) {
 
 PetscErrorCode SceneCheck(Scene scene) {
   PetscFunctionBeginUser;
-  PetscCall(CheckScheme(scene));
-  PetscCall(CheckLengths(scene));
-  PetscCall(CheckFlow(scene));
-  PetscCall(CheckVesicles(scene));
+  PetscCall(SceneCheckScheme(scene));
+  PetscCall(SceneCheckLengths(scene));
+  PetscCall(SceneCheckFlow(scene));
+  PetscCall(SceneCheckVesicles(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -94,7 +94,7 @@ typedef struct {
 } Largest;
 
 /* Differences about one point from the velocities to its right, left, top and bottom. */
-static void Compare(const PetscReal u[8], PetscReal x, PetscReal y, PetscReal apart, Largest *most) {
+static void FlowCompare(const PetscReal u[8], PetscReal x, PetscReal y, PetscReal apart, Largest *most) {
   const PetscReal ux = (u[0] - u[2]) / apart, vx = (u[1] - u[3]) / apart;
   const PetscReal uy = (u[4] - u[6]) / apart, vy = (u[5] - u[7]) / apart;
   const PetscReal gradient = PetscMax(PetscMax(PetscAbsReal(ux), PetscAbsReal(uy)),
@@ -119,7 +119,7 @@ PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscR
     const PetscReal at[8] = {x + step, y, x - step, y, x, y + step, x, y - step};
     PetscReal u[8];
     PetscCall(FlowVelocities(flow, 0, 4, at, u, message));
-    if (!*message) Compare(u, x, y, 2 * step, &most);
+    if (!*message) FlowCompare(u, x, y, 2 * step, &most);
   }
   if (!*message && PetscAbsReal(most.divergence) > TOLERATED * most.gradient + ROUNDOFF * most.speed / step)
     PetscCall(PetscSNPrintf(message, sizeof(message),

@@ -6,7 +6,7 @@
 /* Reynolds number above which a vesicle that unsteady Stokes flow carries along goes astray. */
 #define CARRIED_REYNOLDS 0.05
 
-static PetscReal Reynolds(Scene scene, PetscReal R0) {
+static PetscReal SceneReynolds(Scene scene, PetscReal R0) {
   const Flow *flow = &scene->flow;
   PetscReal speed = 0;
   if (R0 == 0) return 0;
@@ -21,7 +21,7 @@ static PetscReal Reynolds(Scene scene, PetscReal R0) {
 }
 
 /* Largest Reynolds number of a vesicle's own way through the fluid: |u_inf| at its centre, times R0/nu. */
-static PetscReal CarriedReynolds(Scene scene) {
+static PetscReal SceneCarriedReynolds(Scene scene) {
   const Shape *shape = &scene->shape;
   PetscReal most = 0;
   for (PetscInt v = 0; v < shape->vesicles; v++) {
@@ -34,7 +34,7 @@ static PetscReal CarriedReynolds(Scene scene) {
 }
 
 /* FALSE if u_inf differs across a periodic boundary; dir: the first direction in which it does. */
-static PetscBool Seamless(Scene scene, int *dir) {
+static PetscBool FlowIsSeamless(Scene scene, int *dir) {
   const PetscReal *b = scene->fluid.box, d = FluidSpecCellSize(&scene->fluid);
   PetscReal jump = 0, most = 0, u[2], v[2];
   for (*dir = 0; *dir < 2; (*dir)++) {
@@ -61,7 +61,7 @@ static PetscBool Seamless(Scene scene, int *dir) {
 
 /* Check that the step is not too long for the membrane's own time. The membrane is resisted by viscosity, or, without
    the exact near field, by the inertia of a step. */
-static PetscErrorCode CheckStiffness(Scene scene) {
+static PetscErrorCode SceneCheckStiffness(Scene scene) {
   const PetscReal R0 = SceneLargestRadius(scene), dt = scene->time.dt, inertia = R0 * R0 / dt;
   const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal resists = viscous ? scene->fluid.nu : PetscMax(scene->fluid.nu, inertia);
@@ -78,7 +78,7 @@ static PetscErrorCode CheckStiffness(Scene scene) {
 
 /* A copy beyond a periodic boundary moves as its vesicle does. Where the flow there is another one, the copies of a
    packing, which fills the box, run into vesicles at once. */
-static PetscErrorCode CheckPacking(Scene scene, PetscBool seamless, int dir) {
+static PetscErrorCode SceneCheckPacking(Scene scene, PetscBool seamless, int dir) {
   PetscFunctionBeginUser;
   PetscCheck(
       seamless || scene->vesicles.packing == 0, scene->comm, PETSC_ERR_USER_INPUT,
@@ -90,7 +90,7 @@ static PetscErrorCode CheckPacking(Scene scene, PetscBool seamless, int dir) {
 
 /* At rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of a
    shear flow gets the warning). */
-static PetscBool IsPaper(Scene scene) {
+static PetscBool FlowIsPaper(Scene scene) {
   const PetscInt type = scene->flow.type;
   return type == FLOW_QUIESCENT || type == FLOW_SHEAR || type == FLOW_CUSTOM ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -99,15 +99,15 @@ PetscBool SceneHasInertia(Scene scene, PetscReal R0) {
   if (scene->fluid.inertia != INERTIA_AUTO) return scene->fluid.inertia != INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
   if (FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) || scene->obstacles.shape != OBSTACLE_NONE)
     return PETSC_FALSE;
-  if (SceneIsProjection(scene) || R0 == 0 || IsPaper(scene)) return PETSC_TRUE;
-  return Reynolds(scene, R0) >= SMALL_REYNOLDS ? PETSC_TRUE : PETSC_FALSE;
+  if (SceneIsProjection(scene) || R0 == 0 || FlowIsPaper(scene)) return PETSC_TRUE;
+  return SceneReynolds(scene, R0) >= SMALL_REYNOLDS ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Cells between markers, from which on fluid with inertia passes between them; the default has 2. */
 #define SPARSE 2.2
 
 /* Warn of the vesicle whose markers are the farthest apart. */
-static PetscErrorCode WarnOfSparse(Draft scene) {
+static PetscErrorCode SceneWarnOfSparse(Draft scene) {
   const Shape *shape = &scene->shape;
   PetscReal most = 0;
   PetscInt widest = 0, markers = 0;
@@ -131,17 +131,17 @@ static PetscErrorCode WarnOfSparse(Draft scene) {
 }
 
 PetscErrorCode SceneChooseInertia(Draft scene) {
-  const PetscReal carried = CarriedReynolds(scene), R0 = SceneLargestRadius(scene);
+  const PetscReal carried = SceneCarriedReynolds(scene), R0 = SceneLargestRadius(scene);
   const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0);
   PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;
-  PetscCall(CheckStiffness(scene));
-  seamless = Seamless(scene, &dir);
-  PetscCall(CheckPacking(scene, seamless, dir));
-  scene->reynolds = Reynolds(scene, R0);
+  PetscCall(SceneCheckStiffness(scene));
+  seamless = FlowIsSeamless(scene, &dir);
+  PetscCall(SceneCheckPacking(scene, seamless, dir));
+  scene->reynolds = SceneReynolds(scene, R0);
   if (scene->fluid.inertia == INERTIA_AUTO) {
-    const PetscBool carries = !baseline && R0 > 0 && !IsPaper(scene) && scene->scheme.order > 1 && seamless;
+    const PetscBool carries = !baseline && R0 > 0 && !FlowIsPaper(scene) && scene->scheme.order > 1 && seamless;
     scene->fluid.inertia = !inertia ? INERTIA_NONE : carries ? INERTIA_CONVECTIVE : INERTIA_UNSTEADY;
   }
   PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || seamless, scene->comm, PETSC_ERR_USER_INPUT,
@@ -155,6 +155,6 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
                             "convection the flow is not Galilean invariant, the vesicle drags the fluid that it "
                             "displaces behind it and may drift the wrong way; use convective%s",
                             (double)scene->reynolds, baseline ? " with -scheme_type coupled" : ""));
-  PetscCall(WarnOfSparse(scene));
+  PetscCall(SceneWarnOfSparse(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

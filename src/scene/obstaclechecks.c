@@ -8,7 +8,7 @@
 
 /* With inertia the mobility of markers farther apart than 1.5 h is indefinite. */
 /* clang-format off */
-static PetscErrorCode CheckMethod(Scene s) {
+static PetscErrorCode ObstaclesCheckMethod(Scene s) {
   const SceneRule rules[] = {
     {FluidSpecIsFree(&s->fluid),
      "-obstacle_shape: not with -domain_bc_x free, where a body held in a flow has no finite velocity in two dimensions; allowed: walls, or periodic boundaries"},
@@ -27,7 +27,7 @@ static PetscErrorCode CheckMethod(Scene s) {
 /* Check that a curve fits into the box and keeps its distance from the walls that it does not stand on. The least
    distance is KERNEL_FOLDED_CELLS for closed curves, which have finer points next to a wall (layers/finecurve.h), and a
    marker spacing for others. */
-static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
+static PetscErrorCode ObstacleCheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
   const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;
   const PetscReal h = FluidSpecCellSize(f), room[2] = {low - f->box[2 * d], f->box[2 * d + 1] - high};
@@ -46,7 +46,7 @@ static PetscErrorCode CheckRoom(Scene scene, PetscInt b, int d, PetscReal low, P
 
 /* Check the place of a curve, and that the curve is at least LEAST_ACROSS cells across: a bump only along its wall; a
    spanning curve may be flat. */
-static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
+static PetscErrorCode ObstacleCheckPlace(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
   const PetscReal h = FluidSpecCellSize(&scene->fluid);
@@ -61,19 +61,19 @@ static PetscErrorCode CheckPlace(Scene scene, PetscInt b) {
                "-obstacle_shape: obstacle %" PetscInt_FMT " is %.3g cells across in %c; allowed: at least %d, so finer "
                "-domain_cells or a larger one",
                b + 1, (double)((high - low) / h), "xy"[d], LEAST_ACROSS);
-    PetscCall(CheckRoom(scene, b, d, low, high));
+    PetscCall(ObstacleCheckRoom(scene, b, d, low, high));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* TRUE if curve b, or an image of it, holds the point; a spanning curve holds no point. */
-static PetscBool Holds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
+static PetscBool ObstacleHolds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
   return s->kind && s->kind[b].type == CURVE_SPANNING ? PETSC_FALSE : ShapeHolds(s, b, X, period);
 }
 
 /* The spanning curve that a ray from X, upwards (1) or downwards (-1) in direction d, meets first and whose solid is
    towards X, or -1. Curves are looked at over their own period and its neighbours. */
-static PetscInt SolidAlong(const Shape *s, int d, int up, const PetscReal X[2], const PetscReal period[2]) {
+static PetscInt ObstacleSolidAlong(const Shape *s, int d, int up, const PetscReal X[2], const PetscReal period[2]) {
   PetscReal least = PETSC_MAX_REAL;
   PetscInt found = -1;
   for (PetscInt b = 0; b < s->vesicles; b++)
@@ -96,43 +96,47 @@ static PetscInt SolidAlong(const Shape *s, int d, int up, const PetscReal X[2], 
 }
 
 /* The container that holds the point, not looking at curve `self`, or -1. */
-static PetscInt Holder(const SceneObstacles *own, PetscInt self, const PetscReal X[2], const PetscReal period[2]) {
+static PetscInt ObstacleHolder(const SceneObstacles *own, PetscInt self, const PetscReal X[2],
+                               const PetscReal period[2]) {
   for (PetscInt b = 0; b < own->outline.vesicles; b++)
-    if (b != self && own->container[b] && Holds(&own->outline, b, X, period)) return b;
+    if (b != self && own->container[b] && ObstacleHolds(&own->outline, b, X, period)) return b;
   return -1;
 }
 
 /* The obstacle in whose solid the point of curve `self` (-1: of a vesicle) lies, or -1: within a closed curve, outside
    all containers or, that of a container, inside another one, on the solid's side of a spanning curve. */
-static PetscInt SolidAt(const SceneObstacles *own, PetscInt self, const PetscReal X[2], const PetscReal period[2]) {
+static PetscInt ObstacleSolidAt(const SceneObstacles *own, PetscInt self, const PetscReal X[2],
+                                const PetscReal period[2]) {
   const Shape *s = &own->outline;
-  const PetscInt holder = Holder(own, self, X, period);
+  const PetscInt holder = ObstacleHolder(own, self, X, period);
   for (PetscInt b = 0; b < s->vesicles; b++) {
     if (b == self) continue;
-    if (!own->container[b] ? Holds(s, b, X, period) : self >= 0 && own->container[self] ? b == holder : holder < 0)
+    if (!own->container[b]                  ? ObstacleHolds(s, b, X, period)
+        : self >= 0 && own->container[self] ? b == holder
+                                            : holder < 0)
       return b;
   }
   for (int ray = 0; ray < 4 && (self < 0 || s->kind[self].type == CURVE_CLOSED); ray++) {
-    const PetscInt b = SolidAlong(s, ray / 2, ray % 2 ? 1 : -1, X, period);
+    const PetscInt b = ObstacleSolidAlong(s, ray / 2, ray % 2 ? 1 : -1, X, period);
     if (b >= 0) return b;
   }
   return -1;
 }
 
 /* Check that no vesicle and no obstacle is in a solid. */
-static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
+static PetscErrorCode ObstaclesCheckInside(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline, *vesicles = &scene->shape;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < vesicles->vesicles; v++) {
-    const PetscInt b = SolidAt(own, -1, vesicles->X + 2 * vesicles->start[v], period);
+    const PetscInt b = ObstacleSolidAt(own, -1, vesicles->X + 2 * vesicles->start[v], period);
     PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
                "-vesicle_center: vesicle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
                "; allowed: vesicles in the fluid",
                v + 1, b + 1);
   }
   for (PetscInt c = 0; c < s->vesicles; c++) {
-    const PetscInt b = SolidAt(own, c, s->X + 2 * s->start[c], period);
+    const PetscInt b = ObstacleSolidAt(own, c, s->X + 2 * s->start[c], period);
     PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
                "-obstacle_shape: obstacle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
                "; allowed: obstacles in the fluid, apart from one another",
@@ -142,20 +146,20 @@ static PetscErrorCode CheckInside(Scene scene, const PetscReal period[2]) {
 }
 
 /* Find the containers around obstacles and vesicles and the vesicles around obstacles, given that no curves cross. */
-static void FindAround(const Shape *vesicles, const PetscReal period[2], SceneObstacles *own) {
+static void ObstaclesFindAround(const Shape *vesicles, const PetscReal period[2], SceneObstacles *own) {
   const Shape *s = &own->outline;
   for (PetscInt v = 0; v < vesicles->vesicles; v++)
-    own->holder[v] = Holder(own, -1, vesicles->X + 2 * vesicles->start[v], period);
+    own->holder[v] = ObstacleHolder(own, -1, vesicles->X + 2 * vesicles->start[v], period);
   for (PetscInt b = 0; b < s->vesicles; b++) {
-    own->holder[vesicles->vesicles + b] = Holder(own, b, s->X + 2 * s->start[b], period);
+    own->holder[vesicles->vesicles + b] = ObstacleHolder(own, b, s->X + 2 * s->start[b], period);
     own->vesicle[b] = -1;
     for (PetscInt v = 0; v < vesicles->vesicles; v++)
-      if (Holds(vesicles, v, s->X + 2 * s->start[b], period)) own->vesicle[b] = v;
+      if (ObstacleHolds(vesicles, v, s->X + 2 * s->start[b], period)) own->vesicle[b] = v;
   }
 }
 
 /* Check that markers resolve the gaps between obstacles and between an obstacle and its images. */
-static PetscErrorCode CheckGaps(Scene scene, const PetscReal period[2]) {
+static PetscErrorCode ObstaclesCheckGaps(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
   const PetscReal spacing = own->spacing * FluidSpecCellSize(&scene->fluid);
@@ -182,7 +186,7 @@ static PetscErrorCode CheckGaps(Scene scene, const PetscReal period[2]) {
 }
 
 /* Check that no obstacle crosses another one, itself or a vesicle. */
-static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
+static PetscErrorCode ObstaclesCheckCrossing(Scene scene, const PetscReal period[2]) {
   const Shape *s = &scene->obstacles.outline, *v = &scene->shape;
   const PetscInt n = v->vesicles, M = v->start[n], all = n + s->vesicles;
   PetscInt *start, pair[2];
@@ -214,7 +218,7 @@ static PetscErrorCode CheckCrossing(Scene scene, const PetscReal period[2]) {
 
 /* Check that the velocity of a curve that is not closed, less a uniform flow, moves no fluid through the curve. Other
    flows have no flux through walls and across periods. */
-static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
+static PetscErrorCode ObstacleCheckFlux(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
   const PetscInt first = s->start[b], n = s->start[b + 1] - first;
@@ -247,7 +251,7 @@ static PetscErrorCode CheckFlux(Scene scene, PetscInt b) {
 }
 
 /* Check that only closed curves move, and that one of them does. */
-static PetscErrorCode CheckMotion(Scene scene) {
+static PetscErrorCode ObstaclesCheckMotion(Scene scene) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
   PetscBool any = PETSC_FALSE;
@@ -270,14 +274,14 @@ static PetscErrorCode CheckMotion(Scene scene) {
 PetscErrorCode SceneCheckObstacles(Draft scene) {
   PetscReal period[2];
   PetscFunctionBeginUser;
-  PetscCall(CheckMethod(scene));
+  PetscCall(ObstaclesCheckMethod(scene));
   FluidSpecPeriods(&scene->fluid, period);
-  for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckPlace(scene, b));
-  PetscCall(CheckCrossing(scene, period));
-  PetscCall(CheckInside(scene, period));
-  FindAround(&scene->shape, period, &scene->obstacles);
-  PetscCall(CheckGaps(scene, period));
-  PetscCall(CheckMotion(scene));
-  for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(CheckFlux(scene, b));
+  for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(ObstacleCheckPlace(scene, b));
+  PetscCall(ObstaclesCheckCrossing(scene, period));
+  PetscCall(ObstaclesCheckInside(scene, period));
+  ObstaclesFindAround(&scene->shape, period, &scene->obstacles);
+  PetscCall(ObstaclesCheckGaps(scene, period));
+  PetscCall(ObstaclesCheckMotion(scene));
+  for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(ObstacleCheckFlux(scene, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

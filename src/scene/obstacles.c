@@ -20,7 +20,7 @@ typedef struct {
 } Outlines;
 
 /* The place of post k where columns and rows fill the box, each row a part of a column further than the one below. */
-static void PlaceInLattice(Scene scene, PetscInt k, PetscReal center[2]) {
+static void ObstaclePlaceInLattice(Scene scene, PetscInt k, PetscReal center[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscReal *b = scene->fluid.box;
   const PetscInt columns = own->lattice.v[0], rows = own->lattice.v[1];
@@ -29,7 +29,7 @@ static void PlaceInLattice(Scene scene, PetscInt k, PetscReal center[2]) {
   center[1] = b[2] + (b[3] - b[2]) / rows * (k / columns + 0.5);
 }
 
-static PetscErrorCode CheckLattice(Scene scene) {
+static PetscErrorCode ObstaclesCheckLattice(Scene scene) {
   const SceneObstacles *own = &scene->obstacles;
   PetscFunctionBeginUser;
   PetscCheck(own->lattice.n == 2 && (own->lattice.v[0] > 0) == (own->lattice.v[1] > 0), scene->comm,
@@ -46,7 +46,7 @@ static PetscErrorCode CheckLattice(Scene scene) {
 }
 
 /* Make circles, with the velocity and rotation that the options give each of them. */
-static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
+static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscBool lattice = own->lattice.n == 2 && own->lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
@@ -57,7 +57,7 @@ static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
   PetscCall(SceneCheckList(scene, "-obstacle_rotation", own->rotation.n, 1, count, "obstacles", "each"));
   for (PetscInt k = 0; k < count; k++) {
     Outline *one = &o->of[k];
-    if (lattice) PlaceInLattice(scene, k, one->center);
+    if (lattice) ObstaclePlaceInLattice(scene, k, one->center);
     for (int c = 0; c < 2; c++) {
       one->curve.axes[c] = ListEntry(&own->radius, 1, k, 0);
       if (!lattice) one->center[c] = ListEntry(&own->center, 2, k, c);
@@ -68,20 +68,20 @@ static PetscErrorCode MakeCircles(Scene scene, PetscInt count, Outlines *o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakePosts(Scene scene, Outlines *o) {
+static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   PetscFunctionBeginUser;
-  PetscCall(CheckLattice(scene));
+  PetscCall(ObstaclesCheckLattice(scene));
   const PetscInt count = own->lattice.v[0] * own->lattice.v[1];
   PetscCheck(!count || !SceneGiven(scene, "-obstacle_center"), scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_center: given together with -obstacle_lattice; allowed: one of them");
   PetscCheck(count || own->center.n % 2 == 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_center: %" PetscInt_FMT " numbers given; allowed: x,y of each post", own->center.n);
-  PetscCall(MakeCircles(scene, count ? count : own->center.n / 2, o));
+  PetscCall(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
+static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   PetscFunctionBeginUser;
   PetscCheck(own->radius.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
@@ -93,13 +93,13 @@ static PetscErrorCode MakeCouette(Scene scene, Outlines *o) {
       "-obstacle_shape couette: -obstacle_radius %g,%g; allowed: the inner radius first, smaller than the outer one",
       (double)own->radius.v[0], (double)own->radius.v[1]);
   PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 2, "obstacles", "each"));
-  PetscCall(MakeCircles(scene, 2, o));
+  PetscCall(ObstaclesMakeCircles(scene, 2, o));
   o->of[1].note.clockwise = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Two bumps that face one another. */
-static PetscErrorCode MakeConstriction(Scene scene, Outlines *o) {
+static PetscErrorCode ObstaclesMakeConstriction(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;
   PetscFunctionBeginUser;
@@ -115,7 +115,7 @@ static PetscErrorCode MakeConstriction(Scene scene, Outlines *o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakeFromFile(Scene scene, Outlines *o) {
+static PetscErrorCode ObstaclesMakeFromFile(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   PetscReal period[2];
   Curve *curve;
@@ -139,7 +139,7 @@ static PetscErrorCode MakeFromFile(Scene scene, Outlines *o) {
 
 /* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
    is half a spacing off its wall. */
-static PetscErrorCode CreateShape(Scene scene, const Outlines *o, Shape *shape) {
+static PetscErrorCode ObstaclesCreateShape(Scene scene, const Outlines *o, Shape *shape) {
   const PetscReal spacing = scene->obstacles.spacing * FluidSpecCellSize(&scene->fluid);
   PetscInt *markers, all = 0;
   CurveKind *kind;
@@ -165,7 +165,7 @@ static PetscErrorCode CreateShape(Scene scene, const Outlines *o, Shape *shape) 
 }
 
 /* Choose whether each obstacle has its own block in the preconditioner (-obstacle_factor). */
-static PetscErrorCode ChooseFactor(Scene scene, const Outlines *o, SceneObstacles *own) {
+static PetscErrorCode ObstaclesChooseFactor(Scene scene, const Outlines *o, SceneObstacles *own) {
   const FluidSpec *f = &scene->fluid;
   const PetscInt markers = own->outline.start[o->count];
   const PetscBool periodic = f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
@@ -182,12 +182,12 @@ static PetscErrorCode ChooseFactor(Scene scene, const Outlines *o, SceneObstacle
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PlaceMarkers(Scene scene, const Outlines *o, SceneObstacles *own) {
+static PetscErrorCode ObstaclesPlaceMarkers(Scene scene, const Outlines *o, SceneObstacles *own) {
   Shape *shape = &own->outline;
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(shape->digest, o->of[0].curve.digest, DIGEST));
-  PetscCall(CreateShape(scene, o, shape));
-  PetscCall(ChooseFactor(scene, o, own));
+  PetscCall(ObstaclesCreateShape(scene, o, shape));
+  PetscCall(ObstaclesChooseFactor(scene, o, own));
   PetscCall(PetscMalloc2(scene->shape.vesicles + o->count, &own->holder, o->count, &own->vesicle));
   PetscCall(PetscCalloc4(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
                          &own->wall));
@@ -211,16 +211,16 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   PetscFunctionBeginUser;
   if (scene->obstacles.shape == OBSTACLE_NONE) scene->obstacles.moving = PETSC_FALSE;
   if (scene->obstacles.shape == OBSTACLE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
-  if (scene->obstacles.shape == OBSTACLE_POSTS) PetscCall(MakePosts(scene, &o));
-  if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(MakeCouette(scene, &o));
-  if (scene->obstacles.shape == OBSTACLE_CONSTRICTION) PetscCall(MakeConstriction(scene, &o));
-  if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(MakeFromFile(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_POSTS) PetscCall(ObstaclesMakePosts(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(ObstaclesMakeCouette(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_CONSTRICTION) PetscCall(ObstaclesMakeConstriction(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(ObstaclesMakeFromFile(scene, &o));
   for (PetscInt k = 0; k < o.count; k++) {
     Outline *one = &o.of[k];
     one->wall = -1;
     if (one->curve.kind.type == CURVE_OPEN) PetscCall(ArcCut(scene, k, &one->curve, one->part, &one->wall));
   }
-  PetscCall(PlaceMarkers(scene, &o, &scene->obstacles));
+  PetscCall(ObstaclesPlaceMarkers(scene, &o, &scene->obstacles));
   scene->fluid.held = PETSC_TRUE;
   for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.of[k].curve));
   PetscCall(PetscFree(o.of));

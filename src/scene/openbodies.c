@@ -8,30 +8,30 @@
 #define BUMP_POINTS 257
 
 /* Distance (length) of X from a wall, negative behind it. */
-static PetscReal Off(const FluidSpec *f, PetscInt wall, const PetscReal X[2]) {
+static PetscReal ArcOff(const FluidSpec *f, PetscInt wall, const PetscReal X[2]) {
   return (wall % 2 ? -1 : 1) * (X[wall / 2] - f->box[wall]);
 }
 
 /* The wall that X is nearest to, and how far that is. */
-static PetscInt NearestWall(const FluidSpec *f, const PetscReal X[2], PetscReal *off) {
+static PetscInt ArcNearestWall(const FluidSpec *f, const PetscReal X[2], PetscReal *off) {
   PetscInt nearest = -1;
   *off = PETSC_MAX_REAL;
   for (PetscInt wall = 0; wall < 4; wall++) {
-    if (f->bc[wall / 2] != BC_WALL || PetscAbsReal(Off(f, wall, X)) >= PetscAbsReal(*off)) continue;
-    *off = Off(f, wall, X);
+    if (f->bc[wall / 2] != BC_WALL || PetscAbsReal(ArcOff(f, wall, X)) >= PetscAbsReal(*off)) continue;
+    *off = ArcOff(f, wall, X);
     nearest = wall;
   }
   return nearest;
 }
 
 /* The parameter between two at which the curve leaves the height, low below it and high above. */
-static PetscReal Leave(const FluidSpec *f, const Curve *c, PetscInt wall, PetscReal height, PetscReal low,
-                       PetscReal high) {
+static PetscReal ArcLeave(const FluidSpec *f, const Curve *c, PetscInt wall, PetscReal height, PetscReal low,
+                          PetscReal high) {
   for (int it = 0; it < HALVINGS; it++) {
     const PetscReal middle = 0.5 * (low + high);
     PetscReal X[2];
     CurveEvaluate(c, middle, X);
-    if (Off(f, wall, X) < height)
+    if (ArcOff(f, wall, X) < height)
       low = middle;
     else
       high = middle;
@@ -40,14 +40,14 @@ static PetscReal Leave(const FluidSpec *f, const Curve *c, PetscInt wall, PetscR
 }
 
 /* Both ends are on one wall, which is returned. */
-static PetscErrorCode CheckEnds(Scene scene, PetscInt b, const Curve *c, PetscReal height, PetscInt *wall) {
+static PetscErrorCode ArcCheckEnds(Scene scene, PetscInt b, const Curve *c, PetscReal height, PetscInt *wall) {
   const FluidSpec *f = &scene->fluid;
   PetscInt at[2];
   PetscFunctionBeginUser;
   for (int end = 0; end < 2; end++) {
     PetscReal X[2], off;
     CurveEvaluate(c, end, X);
-    at[end] = NearestWall(f, X, &off);
+    at[end] = ArcNearestWall(f, X, &off);
     PetscCheck(at[end] >= 0 && off <= height, scene->comm, PETSC_ERR_USER_INPUT,
                "-obstacle_shape: obstacle %" PetscInt_FMT " is open and ends at (%g, %g), on no wall; allowed: both "
                "ends on one wall of the box, closed curves, and ones whose last point is the first but for a period",
@@ -66,21 +66,21 @@ PetscErrorCode ArcCut(Scene scene, PetscInt b, const Curve *c, PetscReal part[2]
   const PetscReal height = PetscMax(0.5 * scene->obstacles.spacing, KERNEL_FOLDED_CELLS) * h;
   PetscReal least = PETSC_MAX_REAL, most = 0;
   PetscFunctionBeginUser;
-  PetscCall(CheckEnds(scene, b, c, height, wall));
+  PetscCall(ArcCheckEnds(scene, b, c, height, wall));
   for (int end = 0; end < 2; end++) {
     const PetscReal step = (end ? -1. : 1.) / SAMPLES;
     PetscReal t = end, X[2];
     for (PetscInt k = 0; k < SAMPLES; k++, t += step) {
       CurveEvaluate(c, t + step, X);
-      if (Off(f, *wall, X) > height) break;
+      if (ArcOff(f, *wall, X) > height) break;
     }
-    part[end] = Leave(f, c, *wall, height, t, t + step);
+    part[end] = ArcLeave(f, c, *wall, height, t, t + step);
   }
   for (PetscInt k = 0; k <= SAMPLES; k++) {
     PetscReal X[2];
     CurveEvaluate(c, part[0] + (part[1] - part[0]) * (PetscReal)k / SAMPLES, X);
-    least = PetscMin(least, Off(f, *wall, X));
-    most = PetscMax(most, Off(f, *wall, X));
+    least = PetscMin(least, ArcOff(f, *wall, X));
+    most = PetscMax(most, ArcOff(f, *wall, X));
   }
   PetscCheck(part[0] < part[1] && most >= LEAST_RISE * h, scene->comm, PETSC_ERR_USER_INPUT,
              "-obstacle_shape: obstacle %" PetscInt_FMT " rises %.3g cells from its wall; allowed: at least %d", b + 1,

@@ -9,14 +9,14 @@
 #define GAP_RADII 0.05 /* largest default gap, over R0 of the smallest vesicle */
 
 /* The gap of a packing: a cell, but at most a twentieth of R0, a film that the near field resolves. */
-static PetscReal Gap(Scene scene, const Kinds *kinds) {
+static PetscReal PackedGap(Scene scene, const Kinds *kinds) {
   PetscReal R0 = PETSC_MAX_REAL;
   if (scene->vesicles.packing_gap > 0) return scene->vesicles.packing_gap;
   for (PetscInt k = 0; k < kinds->kinds; k++) R0 = PetscMin(R0, kinds->kind[k].length / (2 * PETSC_PI));
   return PetscMin(GAP_CELLS * FluidSpecCellSize(&scene->fluid), GAP_RADII * R0);
 }
 
-static PetscErrorCode Turned(Scene scene, PetscInt v, PetscReal along[2]) {
+static PetscErrorCode VesicleDirection(Scene scene, PetscInt v, PetscReal along[2]) {
   const PetscReal turn = ListEntry(&scene->vesicles.angle, 1, v, 0) * PETSC_PI / 180;
   PetscFunctionBeginUser;
   along[0] = PetscCosReal(turn);
@@ -30,7 +30,7 @@ typedef struct {
 } Place;
 
 /* By kind, then from the bottom up. */
-static int ByHeight(const void *first, const void *second) {
+static int PackedOrder(const void *first, const void *second) {
   const Place *a = (const Place *)first, *b = (const Place *)second;
   if (a->kind != b->kind) return a->kind < b->kind ? -1 : 1;
   return (a->pose.center[1] > b->pose.center[1]) - (a->pose.center[1] < b->pose.center[1]);
@@ -38,7 +38,7 @@ static int ByHeight(const void *first, const void *second) {
 
 /* Number the vesicles of each kind from the bottom up: ranks own ranges of vesicles and of the grid's rows, so that
    vesicles that are near one another, and the rows that they are in, are mostly on one rank. */
-static PetscErrorCode NumberByHeight(const Kinds *kinds, Pose pose[]) {
+static PetscErrorCode PackedNumber(const Kinds *kinds, Pose pose[]) {
   PetscInt *next;
   Place *place;
   PetscFunctionBeginUser;
@@ -48,7 +48,7 @@ static PetscErrorCode NumberByHeight(const Kinds *kinds, Pose pose[]) {
     place[v] = (Place){kinds->of[v], pose[v]};
     next[kinds->of[v] + 1]++;
   }
-  qsort(place, (size_t)kinds->vesicles, sizeof(Place), ByHeight);
+  qsort(place, (size_t)kinds->vesicles, sizeof(Place), PackedOrder);
   for (PetscInt k = 0; k < kinds->kinds; k++) next[k + 1] += next[k];
   for (PetscInt v = 0; v < kinds->vesicles; v++) pose[v] = place[next[kinds->of[v]]++].pose;
   PetscCall(PetscFree(next));
@@ -57,11 +57,11 @@ static PetscErrorCode NumberByHeight(const Kinds *kinds, Pose pose[]) {
 }
 
 /* Rank 0 packs and tells the others. */
-static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
+static PetscErrorCode ScenePack(Scene scene, const Kinds *kinds, Pose pose[]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool lattice = own->packing_type == PACKING_LATTICE ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal cells = scene->coupling.near_field == NEAR_EXACT ? KERNEL_FOLDED_CELLS : KERNEL_WALL_CELLS;
-  const PetscReal gap = Gap(scene, kinds), wall = (cells + LEEWAY) * FluidSpecCellSize(&scene->fluid);
+  const PetscReal gap = PackedGap(scene, kinds), wall = (cells + LEEWAY) * FluidSpecCellSize(&scene->fluid);
   PackingSpec spec = {.gap = gap, .wall_gap = PetscMax(gap, wall), .seed = own->packing_seed};
   PetscReal *axes, part = 0, along[2];
   PetscMPIInt rank;
@@ -72,10 +72,10 @@ static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
   PetscCall(PetscMalloc1(2 * kinds->vesicles, &axes));
   for (PetscInt v = 0; v < kinds->vesicles; v++)
     PetscCall(PetscArraycpy(axes + 2 * v, kinds->kind[kinds->of[v]].curve.axes, 2));
-  PetscCall(Turned(scene, 0, along));
+  PetscCall(VesicleDirection(scene, 0, along));
   if (!rank && lattice) PetscCall(PackLattice(&spec, kinds->vesicles, axes, along, pose, &part));
   if (!rank && !lattice) PetscCall(PackRandomly(&spec, kinds->vesicles, axes, pose, &part));
-  if (!rank && !lattice && part >= 1) PetscCall(NumberByHeight(kinds, pose));
+  if (!rank && !lattice && part >= 1) PetscCall(PackedNumber(kinds, pose));
   PetscCall(PetscFree(axes));
   PetscCallMPI(MPI_Bcast(&part, 1, MPIU_REAL, 0, scene->comm));
   PetscCallMPI(MPI_Bcast(pose, (PetscMPIInt)(sizeof(Pose) / sizeof(PetscReal) * (size_t)kinds->vesicles), MPIU_REAL, 0,
@@ -92,12 +92,12 @@ static PetscErrorCode Pack(Scene scene, const Kinds *kinds, Pose pose[]) {
 PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]) {
   PetscFunctionBeginUser;
   if (scene->vesicles.packing > 0 && scene->vesicles.shape == SHAPE_ELLIPSE) {
-    PetscCall(Pack(scene, kinds, pose));
+    PetscCall(ScenePack(scene, kinds, pose));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt v = 0; v < kinds->vesicles; v++) {
     for (int c = 0; c < 2; c++) pose[v].center[c] = ListEntry(&scene->vesicles.center, 2, v, c);
-    PetscCall(Turned(scene, v, pose[v].along));
+    PetscCall(VesicleDirection(scene, v, pose[v].along));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,7 +8,7 @@
 #include "scene/vesicles.h"
 
 /* The user's lists, whose lengths have been checked, and the flow, for the fluid. */
-static void DescribeFluid(Draft s) {
+static void SceneDescribeFluid(Draft s) {
   s->fluid.comm = s->comm;
   for (int k = 0; k < 4; k++) s->fluid.box[k] = s->domain.box.v[k];
   for (int d = 0; d < 2; d++) s->fluid.cells[d] = s->domain.cells.v[d];
@@ -16,7 +16,7 @@ static void DescribeFluid(Draft s) {
 }
 
 /* Penalty's springs, where none are given: half of what the step bears. */
-static void ChooseStiffness(Draft s) {
+static void SceneChooseStiffness(Draft s) {
   const PetscReal h = FluidSpecCellSize(&s->fluid), dt = s->time.dt;
   const PetscReal *bound = KernelFind(s->coupling.kernel)->spring;
   if (strcmp(s->scheme.type, "penalty") || s->scheme.stiffness > 0) return;
@@ -47,7 +47,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
              "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
   s->flow.function = flow;
   s->flow.ctx = ctx;
-  DescribeFluid(s);
+  SceneDescribeFluid(s);
   /* 6  the vesicles, the obstacles, the flow from numbers that go by their size, the markers with the kernel's spacing
    * if none is given
    */
@@ -62,7 +62,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   /* 8  Reynolds number, model of the fluid, warning */
   PetscCall(SceneChooseInertia(s));
   /* 9  penalty's springs, which go by the step */
-  ChooseStiffness(s);
+  SceneChooseStiffness(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

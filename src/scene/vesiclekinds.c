@@ -9,7 +9,7 @@
 #define LEEWAY 0.04   /* by which their number may differ for it */
 
 /* The odd number with prime factors up to 13 that is nearest to M, if one is near. */
-static PetscInt FastOdd(PetscInt M) {
+static PetscInt KindFastOdd(PetscInt M) {
   for (PetscInt away = 0; away <= LEEWAY * M; away += 2)
     for (int side = -1; side <= 1; side += 2) {
       PetscInt left = M + side * away;
@@ -21,7 +21,7 @@ static PetscInt FastOdd(PetscInt M) {
 }
 
 /* Rate of the flow over the membrane's own, of a vesicle of radius R0; 0 where either is zero. */
-static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
+static PetscReal KindChi(Scene scene, PetscReal R0, PetscReal bending) {
   return bending == 0 ? 0 : FlowShearRate(&scene->flow) * scene->fluid.nu * PetscPowRealInt(R0, 3) / bending;
 }
 
@@ -31,10 +31,10 @@ static PetscReal Chi(Scene scene, PetscReal R0, PetscReal bending) {
 /* Number of markers for the exact near field, where markers have to resolve the shape and not the grid: 45 for a
    reduced area of 0.6 and more, in proportion more for thinner vesicles, and half as many more where the flow is so
    strong that membranes wrinkle. No edge is longer than two cells, so that the kernel leaks nothing. */
-static PetscReal WantedByShape(Scene scene, const Kind *kind) {
+static PetscReal KindMarkersByShape(Scene scene, const Kind *kind) {
   const PetscReal length = kind->length, V = 4 * PETSC_PI * kind->area / PetscSqr(length),
                   thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
-  const PetscReal strong = Chi(scene, length / (2 * PETSC_PI), kind->bending) >= STRONG * (1 - 1e-6) ? 1.5 : 1;
+  const PetscReal strong = KindChi(scene, length / (2 * PETSC_PI), kind->bending) >= STRONG * (1 - 1e-6) ? 1.5 : 1;
   return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
 }
 
@@ -44,7 +44,7 @@ static PetscReal WantedByShape(Scene scene, const Kind *kind) {
 
 /* Number of markers of a curve: the user's own; by the shape; or the even (for spectral edges odd) number nearest to
    length/(spacing h). */
-static PetscErrorCode MarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
+static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool exact = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
@@ -52,7 +52,7 @@ static PetscErrorCode MarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
   const PetscReal spacing = own->spacing > 0 ? own->spacing : kernel->default_spacing;
   const PetscReal length = kind->length, h = FluidSpecCellSize(&scene->fluid), pairs = length / (2 * spacing * h);
   const PetscBool by_shape = exact && !own->markers && own->spacing == 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal wanted = own->markers ? own->markers : (by_shape ? WantedByShape(scene, kind) : 2 * pairs);
+  const PetscReal wanted = own->markers ? own->markers : (by_shape ? KindMarkersByShape(scene, kind) : 2 * pairs);
   PetscFunctionBeginUser;
   PetscCheck(own->markers <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_markers %" PetscInt_FMT ": more than the dense matrices of a vesicle hold; allowed: at most %d",
@@ -68,7 +68,7 @@ static PetscErrorCode MarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
     *M = 2 * (PetscInt)PetscCeilReal((wanted - 1) / 2 * (1 - 1e-12)) + 1;
   else /* odd: no Nyquist mode */
     *M = spectral ? 2 * (PetscInt)PetscFloorReal(pairs) + 1 : 2 * (PetscInt)PetscFloorReal(pairs + 0.5);
-  if (!own->markers && !by_shape && spectral && *M > MANY) *M = FastOdd(*M);
+  if (!own->markers && !by_shape && spectral && *M > MANY) *M = KindFastOdd(*M);
   PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_spacing %g: %" PetscInt_FMT
              " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
@@ -77,7 +77,7 @@ static PetscErrorCode MarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
 }
 
 /* Check that M markers on a curve are as far apart as kernel and near field need. */
-static PetscErrorCode CheckSpacing(Scene scene, const Kind *kind, PetscInt M) {
+static PetscErrorCode KindCheckSpacing(Scene scene, const Kind *kind, PetscInt M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
   const SceneVesicles *own = &scene->vesicles;
   const PetscReal h = FluidSpecCellSize(&scene->fluid);
@@ -97,8 +97,8 @@ static PetscErrorCode CheckSpacing(Scene scene, const Kind *kind, PetscInt M) {
 PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscReal left;
   PetscFunctionBeginUser;
-  PetscCall(MarkerCount(scene, kind, &kind->M));
-  PetscCall(CheckSpacing(scene, kind, kind->M));
+  PetscCall(KindMarkerCount(scene, kind, &kind->M));
+  PetscCall(KindCheckSpacing(scene, kind, kind->M));
   PetscCall(PetscMalloc1(2 * kind->M, &kind->X));
   if (scene->membrane.derivative == DERIVATIVE_SPECTRAL) {
     PetscCall(CurveEqualArcs(&kind->curve, NULL, kind->M, kind->X));
@@ -120,7 +120,7 @@ static void EllipseKey(Scene scene, PetscInt v, PetscReal key[3]) {
   key[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
 }
 
-static PetscErrorCode EllipseKinds(Scene scene, Kinds *all) {
+static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
   PetscReal(*key)[3];
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(all->vesicles, &all->kind));
@@ -144,7 +144,7 @@ static PetscErrorCode EllipseKinds(Scene scene, Kinds *all) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
+static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   const SceneVesicles *own = &scene->vesicles;
   Curve *curve;
   PetscFunctionBeginUser;
@@ -170,13 +170,13 @@ static PetscErrorCode FileKinds(Scene scene, Kinds *all) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal BoxArea(Scene scene) {
+static PetscReal SceneBoxArea(Scene scene) {
   const PetscReal *b = scene->domain.box.v; /* the fluid is not described yet */
   return (b[1] - b[0]) * (b[3] - b[2]);
 }
 
 /* Mean area of a vesicle by the mixture. */
-static PetscReal MeanArea(Scene scene) {
+static PetscReal KindsMeanArea(Scene scene) {
   const SceneVesicles *own = &scene->vesicles;
   PetscReal mean = 0;
   for (PetscInt k = 0; k < own->mixture.n; k++) {
@@ -188,9 +188,9 @@ static PetscReal MeanArea(Scene scene) {
 }
 
 /* How many vesicles a packing takes, or with -vesicle_count their area. */
-static PetscErrorCode CountPacked(Draft scene) {
+static PetscErrorCode KindsCountPacked(Draft scene) {
   SceneVesicles *own = &scene->vesicles;
-  const PetscReal mean = MeanArea(scene), box = BoxArea(scene), wanted = own->packing * box / mean;
+  const PetscReal mean = KindsMeanArea(scene), box = SceneBoxArea(scene), wanted = own->packing * box / mean;
   PetscFunctionBeginUser;
   if (own->shape != SHAPE_ELLIPSE || own->packing == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
@@ -211,7 +211,7 @@ static PetscErrorCode CountPacked(Draft scene) {
 
 /* The entry of the lists that each of -vesicle_count vesicles takes with -vesicle_mixture: one after another the kind
    that is furthest behind its part, so that any row of vesicles has the mixture. */
-static PetscErrorCode MixKinds(Draft scene) {
+static PetscErrorCode KindsMix(Draft scene) {
   const RealList *part = &scene->vesicles.mixture;
   const PetscInt n = scene->vesicles.count;
   PetscInt *have;
@@ -232,7 +232,7 @@ static PetscErrorCode MixKinds(Draft scene) {
 
 /* The rate or velocity that the dimensionless `number` stands for: number c_b/(nu R0^power), R0 of the largest vesicle.
  */
-static PetscErrorCode DeriveFlow(Draft scene, const char name[], PetscReal number, const char stands_for[], int power,
+static PetscErrorCode FlowDerive(Draft scene, const char name[], PetscReal number, const char stands_for[], int power,
                                  PetscReal *value) {
   const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI);
   PetscFunctionBeginUser;
@@ -250,27 +250,27 @@ static PetscErrorCode DeriveFlow(Draft scene, const char name[], PetscReal numbe
 }
 
 /* Rate or peak velocity from -flow_chi or -flow_ca. */
-static PetscErrorCode ChooseFlow(Draft scene) {
+static PetscErrorCode FlowChoose(Draft scene) {
   Flow *flow = &scene->flow;
   const PetscBool strain = flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (strain && SceneGiven(scene, "-flow_chi"))
-    PetscCall(DeriveFlow(scene, "-flow_chi", flow->chi, "-flow_rate", 3, &flow->rate));
+    PetscCall(FlowDerive(scene, "-flow_chi", flow->chi, "-flow_rate", 3, &flow->rate));
   if (flow->type == FLOW_POISEUILLE && SceneGiven(scene, "-flow_ca"))
-    PetscCall(DeriveFlow(scene, "-flow_ca", flow->ca, "-flow_peak_velocity", 2, &flow->peak));
+    PetscCall(FlowDerive(scene, "-flow_ca", flow->ca, "-flow_peak_velocity", 2, &flow->peak));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(all, sizeof(*all)));
-  PetscCall(CountPacked(scene));
-  PetscCall(MixKinds(scene));
-  if (scene->vesicles.shape == SHAPE_FILE) PetscCall(FileKinds(scene, all));
+  PetscCall(KindsCountPacked(scene));
+  PetscCall(KindsMix(scene));
+  if (scene->vesicles.shape == SHAPE_FILE) PetscCall(KindsOfFile(scene, all));
   if (scene->vesicles.shape < SHAPE_FILE) {
     all->vesicles = scene->vesicles.count;
     PetscCall(PetscMalloc1(all->vesicles, &all->of));
-    PetscCall(EllipseKinds(scene, all));
+    PetscCall(KindsOfEllipses(scene, all));
   }
   for (PetscInt k = 0; k < all->kinds; k++) {
     Kind *kind = &all->kind[k];
@@ -279,7 +279,7 @@ PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
     scene->membrane.bending = PetscMax(scene->membrane.bending, kind->bending);
     scene->shape.longest = PetscMax(scene->shape.longest, kind->length);
   }
-  PetscCall(ChooseFlow(scene));
+  PetscCall(FlowChoose(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

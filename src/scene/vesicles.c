@@ -4,7 +4,7 @@
 #include "scene/properties.h"
 
 /* Markers X on a kind's curve, turned and moved, as Y, which may be X. */
-static void Place(const Kind *kind, const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {
+static void KindPlace(const Kind *kind, const Pose *at, PetscInt M, const PetscReal X[], PetscReal Y[]) {
   const PetscReal c = at->along[0], s = at->along[1], *about = kind->pivot;
   for (PetscInt k = 0; k < M; k++) {
     const PetscReal x = X[2 * k] - about[0], y = X[2 * k + 1] - about[1];
@@ -16,7 +16,7 @@ static void Place(const Kind *kind, const Pose *at, PetscInt M, const PetscReal 
 #define OUTLINE 256 /* points that stand for a curve */
 
 /* The options that a vesicle's size comes from. */
-static PetscErrorCode SizeOptions(Scene scene, PetscInt v, char text[], size_t length) {
+static PetscErrorCode VesicleSizeOptions(Scene scene, PetscInt v, char text[], size_t length) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscInt k = SceneKindOf(scene, v);
   PetscFunctionBeginUser;
@@ -36,7 +36,7 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
   for (PetscInt k = 0; k < OUTLINE; k++) {
     PetscReal X[2];
     CurveEvaluate(&kind->curve, (PetscReal)k / OUTLINE, X);
-    Place(kind, at, 1, X, X);
+    KindPlace(kind, at, 1, X, X);
     for (int d = 0; d < 2; d++) {
       around[2 * d] = PetscMin(around[2 * d], X[d]);
       around[2 * d + 1] = PetscMax(around[2 * d + 1], X[d]);
@@ -46,12 +46,12 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
 
 /* Check that a curve, turned and moved, is between the walls and no longer than a period, before markers are fitted to
    the curve. */
-static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
+static PetscErrorCode VesicleCheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
   PetscReal around[4] = KIND_NOWHERE;
   char size[256];
   PetscFunctionBeginUser;
-  PetscCall(SizeOptions(scene, v, size, sizeof(size)));
+  PetscCall(VesicleSizeOptions(scene, v, size, sizeof(size)));
   KindExtend(kind, at, around);
   for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
     const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
@@ -71,7 +71,7 @@ static PetscErrorCode CheckRoom(Scene scene, const Kind *kind, const Pose *at, P
 
 /* The first two vesicles of which one, or an image of it, lies within the other, given that no vesicles cross; -1:
    none. */
-static void FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
+static void VesiclesFindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
   for (PetscInt a = 0; a < s->vesicles; a++)
     for (PetscInt b = 0; b < s->vesicles; b++) {
       if (a == b || !ShapeHolds(s, a, s->X + 2 * s->start[b], period)) continue;
@@ -82,7 +82,7 @@ static void FindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[
 }
 
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */
-static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
+static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
   const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
   PetscReal period[2];
   PetscInt pair[2];
@@ -94,7 +94,7 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
              "%s: vesicle %" PetscInt_FMT
              " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",
              scene->vesicles.shape == SHAPE_FILE ? "-vesicle_file" : "-domain_box", pair[0] + 1);
-  if (pair[0] < 0) FindWithin(s, period, pair);
+  if (pair[0] < 0) VesiclesFindWithin(s, period, pair);
   PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
              " overlap; allowed: vesicles apart from one another",
@@ -103,7 +103,7 @@ static PetscErrorCode CheckOverlap(Scene scene, const Shape *s) {
 }
 
 /* Fit the kinds, and make the shape with the numbers of their markers. */
-static PetscErrorCode CreateShape(Scene scene, Kinds *kinds, Shape *shape) {
+static PetscErrorCode VesiclesCreateShape(Scene scene, Kinds *kinds, Shape *shape) {
   PetscInt *markers, all = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(kinds->vesicles, &markers));
@@ -131,16 +131,17 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
   PetscCall(ScenePlace(scene, &kinds, pose));
-  for (PetscInt v = 0; v < kinds.vesicles; v++) PetscCall(CheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
-  PetscCall(CreateShape(scene, &kinds, shape));
+  for (PetscInt v = 0; v < kinds.vesicles; v++)
+    PetscCall(VesicleCheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
+  PetscCall(VesiclesCreateShape(scene, &kinds, shape));
   for (PetscInt v = 0; v < kinds.vesicles; v++) {
     const Kind *kind = &kinds.kind[kinds.of[v]];
-    Place(kind, &pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
+    KindPlace(kind, &pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
     scene->membrane.each[v] = kind->bending;
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
-  PetscCall(CheckOverlap(scene, shape));
+  PetscCall(VesiclesCheckOverlap(scene, shape));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -58,7 +58,7 @@ static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const char *NearField(Scene scene) {
+static const char *ViewNearField(Scene scene) {
   if (scene->coupling.near_field == NEAR_NONE) return "none";
   if (SceneHasBoxPart(scene)) return "exact with box part";
   return scene->coupling.box_part ? "exact without box part (a period is longer than 4 times the other side)" : "exact";
@@ -67,7 +67,7 @@ static const char *NearField(Scene scene) {
 #define FEW 8 /* vesicles that get a line each */
 
 /* Area of the polygons of all markers. */
-static PetscReal PolygonArea(const Shape *s) {
+static PetscReal ShapePolygonArea(const Shape *s) {
   PetscReal area = 0;
   for (PetscInt v = 0; v < s->vesicles; v++)
     for (PetscInt k = s->start[v], p = s->start[v + 1] - 1; k < s->start[v + 1]; p = k++)
@@ -94,7 +94,7 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
   if (shape->vesicles > FEW)
     PetscCall(PetscViewerASCIIPrintf(
         v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " to %" PetscInt_FMT " markers, area fraction %.4g%s\n",
-        shape->vesicles, few, many, (double)(PolygonArea(shape) / ((b[1] - b[0]) * (b[3] - b[2]))),
+        shape->vesicles, few, many, (double)(ShapePolygonArea(shape) / ((b[1] - b[0]) * (b[3] - b[2]))),
         scene->vesicles.packing > 0 ? ", packed" : ""));
   if (!shape->vesicles || scene->membrane.bending == 0)
     PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
@@ -132,8 +132,8 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   PetscCall(ViewVesicles(scene, v));
   if (shape->vesicles)
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
-                                     scene->coupling.kernel, derivatives[scene->membrane.derivative], NearField(scene),
-                                     SceneHasAreaTarget(scene) ? "on" : "off"));
+                                     scene->coupling.kernel, derivatives[scene->membrane.derivative],
+                                     ViewNearField(scene), SceneHasAreaTarget(scene) ? "on" : "off"));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
                                    scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
   if (FluidSpecIsFree(&scene->fluid))
