@@ -23,13 +23,8 @@ typedef struct _LayerCells {
   const LayerSetting *set;
   LayerType type;
   int sources;
-  /* table of the lattice's u, v and p by source, its block and what is added to the offset */
-  struct {
-    const OffsetTable *table;
-    OffsetBlock block;
-    PetscInt cells[2];
-  } answer[3][DIPOLE_COUNT];
-  PetscReal scale[3]; /* of u, v, p in the tables */
+  OffsetEntry answer[3][DIPOLE_COUNT]; /* of the lattice's u, v and p by source */
+  PetscReal scale[3];                  /* of u, v, p in the tables */
   FarCell far;
   CurveLayer curve;
   PetscReal ratio;
@@ -81,8 +76,7 @@ static void LayerCellsLattice(void *context, PetscInt k, const PetscInt cell[2],
     CellStencil((Field)c, cell, &weights);
     for (int q = 0; q < s->sources; q++) {
       const PetscInt source = s->sources * k + q;
-      StencilRowAdd(s->answer[c][q].table, s->answer[c][q].block, &weights, &s->stencil[source], s->answer[c][q].cells,
-                    -s->scale[c] * s->strength[source], n, sum[c]);
+      StencilRowAdd(&s->answer[c][q], &weights, &s->stencil[source], -s->scale[c] * s->strength[source], n, sum[c]);
     }
   }
 }

@@ -62,105 +62,90 @@ void StencilUnwrap(Grid g, const PetscReal X[2], PaddedStencil s[2]) {
     }
 }
 
-/* Weights of the lags that two stencils have, from the least one on, which is returned; zeros up to the last vector's
-   end. */
-static inline PetscInt Lags(const int vectors, int dir, const PaddedStencil *response, const PaddedStencil *source,
-                            Lanes weight[]) {
-  const PetscInt n = source->n[dir];
+/* Three vectors of numbers. */
+typedef union {
+  Lanes lanes[3];
+  PetscReal weight[3 * LANES];
+} StencilLags;
+
+/* Weights of the lags of two stencils, the source's of n points, from the least one on, which is returned; zeros up to
+   the last vector's end. */
+static inline PetscInt StencilLagsOf(const int vectors, const PetscInt n, int dir, const PaddedStencil *response,
+                                     const PaddedStencil *source, StencilLags *lags) {
   const PetscReal *a = response->weight[dir] + KERNEL_MAX_POINTS + 1 - n, *b = source->weight[dir] + KERNEL_MAX_POINTS;
-  for (int q = 0; q < vectors; q++) weight[q] = b[0] * LanesAt(a + q * LANES);
+  for (int q = 0; q < vectors; q++) lags->lanes[q] = b[0] * LanesAt(a + q * LANES);
   for (PetscInt j = 1; j < n; j++)
-    for (int q = 0; q < vectors; q++) weight[q] += b[j] * LanesAt(a + j + q * LANES);
+    for (int q = 0; q < vectors; q++) lags->lanes[q] += b[j] * LanesAt(a + j + q * LANES);
   return response->first[dir] - source->first[dir] - (n - 1);
 }
 
-/* The double sum of a table whose middle is at `value`, with a row's lags in so many vectors. */
-static inline PetscReal RowSum(const int vectors, const PetscReal *value, PetscInt width, const PaddedStencil *response,
-                               const PaddedStencil *source, const PetscInt cells[2]) {
-  Lanes wx[3], line[3];
-  union {
-    Lanes lanes[3];
-    PetscReal weight[3 * LANES];
-  } wy;
-  const PetscInt rows = response->n[1] + source->n[1] - 1, i0 = Lags(vectors, 0, response, source, wx) + cells[0];
-  const PetscInt j0 = cells[1] + (rows <= 2 * LANES ? Lags(2, 1, response, source, wy.lanes)
-                                                    : Lags(3, 1, response, source, wy.lanes));
-  const PetscReal *row = value + j0 * width + i0;
-  for (int q = 0; q < vectors; q++) line[q] = wy.weight[0] * LanesAt(row + q * LANES);
-  for (PetscInt j = 1; j < rows; j++) {
-    row += width;
-    for (int q = 0; q < vectors; q++) line[q] += wy.weight[j] * LanesAt(row + q * LANES);
-  }
-  line[0] *= wx[0];
-  for (int q = 1; q < vectors; q++) line[0] += wx[q] * line[q];
-  return LanesSum(line[0]);
+/* A table's numbers from the offset (0, 0) on. */
+typedef struct {
+  const PetscReal *value;
+  PetscInt width;
+} TableMiddle;
+
+static inline TableMiddle TableMiddleOf(const OffsetTable *t, int block) {
+  const PetscInt width = 2 * t->size[0] + 1;
+  return (TableMiddle){t->value[block] + t->size[1] * width + t->size[0], width};
 }
 
-/* Of one component of a to one of b. */
-static inline PetscReal TableSum(const PetscReal *value, PetscInt width, const PaddedStencil *a, const PaddedStencil *b,
-                                 const PetscInt cells[2]) {
-  return a->n[0] + b->n[0] - 1 <= 2 * LANES ? RowSum(2, value, width, a, b, cells)
-                                            : RowSum(3, value, width, a, b, cells);
-}
+/* Points of a response and a source along x and y, and the vectors of a row's lags. */
+typedef struct {
+  int vectors;
+  PetscInt response[2], source[2];
+} StencilPoints;
 
-/* The double sum of stencils whose numbers of points are known to the compiler: r and s along x and y. */
-static inline PetscReal FixedSum(const int rx, const int ry, const int sx, const int sy, const PetscReal *value,
-                                 PetscInt width, const PaddedStencil *response, const PaddedStencil *source,
-                                 const PetscInt cells[2]) {
-  const int vectors = (rx + sx - 1 + LANES - 1) / LANES, rows = ry + sy - 1;
-  const PetscReal *ax = response->weight[0] + KERNEL_MAX_POINTS + 1 - sx, *bx = source->weight[0] + KERNEL_MAX_POINTS;
-  const PetscReal *ay = response->weight[1] + KERNEL_MAX_POINTS + 1 - sy, *by = source->weight[1] + KERNEL_MAX_POINTS;
-  const PetscInt i0 = response->first[0] - source->first[0] - (sx - 1) + cells[0];
-  const PetscInt j0 = response->first[1] - source->first[1] - (sy - 1) + cells[1];
-  const PetscReal *row = value + j0 * width + i0;
+/* The double sum of two stencils with these points. */
+static inline PetscReal StencilSum(const StencilPoints p, TableMiddle t, const PaddedStencil *response,
+                                   const PaddedStencil *source, const PetscInt cells[2]) {
+  const PetscInt rows = p.response[1] + p.source[1] - 1;
+  StencilLags wx, wy;
+  const PetscInt i0 = StencilLagsOf(p.vectors, p.source[0], 0, response, source, &wx) + cells[0];
+  const PetscInt j0 = cells[1] + (rows <= 2 * LANES ? StencilLagsOf(2, p.source[1], 1, response, source, &wy)
+                                                    : StencilLagsOf(3, p.source[1], 1, response, source, &wy));
+  const PetscReal *row = t.value + j0 * t.width + i0;
   Lanes line[3] = {{0}, {0}, {0}}, sum = {0};
-  union {
-    Lanes lanes[3];
-    PetscReal weight[3 * LANES];
-  } wy;
-  for (int q = 0; q < (rows + LANES - 1) / LANES; q++) {
-    wy.lanes[q] = by[0] * LanesAt(ay + q * LANES);
-    for (int j = 1; j < sy; j++) wy.lanes[q] += by[j] * LanesAt(ay + j + q * LANES);
-  }
-  for (int j = 0; j < rows; j++, row += width)
-    for (int q = 0; q < vectors; q++) line[q] += wy.weight[j] * LanesAt(row + q * LANES);
-  for (int q = 0; q < vectors; q++) {
-    Lanes wx = bx[0] * LanesAt(ax + q * LANES);
-    for (int j = 1; j < sx; j++) wx += bx[j] * LanesAt(ax + j + q * LANES);
-    sum += wx * line[q];
-  }
+  for (PetscInt j = 0; j < rows; j++, row += t.width)
+    for (int q = 0; q < p.vectors; q++) line[q] += wy.weight[j] * LanesAt(row + q * LANES);
+  for (int q = 0; q < p.vectors; q++) sum += wx.lanes[q] * line[q];
   return LanesSum(sum);
+}
+
+/* The same where the compiler knows the points. */
+#define FIXED_SUM(rx, ry, sx, sy, ...)                                                                                 \
+  StencilSum((StencilPoints){((rx) + (sx) + LANES - 2) / LANES, {rx, ry}, {sx, sy}}, __VA_ARGS__)
+
+/* The double sum of stencils of any points. */
+static inline PetscReal AnySum(TableMiddle t, const PaddedStencil *a, const PaddedStencil *b, const PetscInt cells[2]) {
+  const StencilPoints p = {2, {a->n[0], a->n[1]}, {b->n[0], b->n[1]}};
+  const StencilPoints wide = {3, {a->n[0], a->n[1]}, {b->n[0], b->n[1]}};
+  return a->n[0] + b->n[0] - 1 <= 2 * LANES ? StencilSum(p, t, a, b, cells) : StencilSum(wide, t, a, b, cells);
 }
 
 void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[2], const PaddedStencil dipole[3],
                        const PetscInt cells[2], PetscReal sum[2][3]) {
-  const PetscInt width = 2 * table[0].size[0] + 1, middle = table[0].size[1] * width + table[0].size[0];
-  const PetscReal *t[2][3];
-  for (int c = 0; c < 2; c++)
-    for (int k = 0; k < 3; k++) t[c][k] = table[c].value[k] + middle;
-  sum[0][0] = FixedSum(5, 4, 6, 4, t[0][0], width, &response[0], &dipole[0], cells);
-  sum[0][1] = FixedSum(5, 4, 4, 6, t[0][1], width, &response[0], &dipole[1], cells);
-  sum[0][2] = FixedSum(5, 4, 5, 5, t[0][2], width, &response[0], &dipole[2], cells);
-  sum[1][0] = FixedSum(4, 5, 6, 4, t[1][0], width, &response[1], &dipole[0], cells);
-  sum[1][1] = FixedSum(4, 5, 4, 6, t[1][1], width, &response[1], &dipole[1], cells);
-  sum[1][2] = FixedSum(4, 5, 5, 5, t[1][2], width, &response[1], &dipole[2], cells);
+  const PaddedStencil *u = &response[0], *v = &response[1];
+  sum[0][0] = FIXED_SUM(5, 4, 6, 4, TableMiddleOf(&table[0], 0), u, &dipole[0], cells);
+  sum[0][1] = FIXED_SUM(5, 4, 4, 6, TableMiddleOf(&table[0], 1), u, &dipole[1], cells);
+  sum[0][2] = FIXED_SUM(5, 4, 5, 5, TableMiddleOf(&table[0], 2), u, &dipole[2], cells);
+  sum[1][0] = FIXED_SUM(4, 5, 6, 4, TableMiddleOf(&table[1], 0), v, &dipole[0], cells);
+  sum[1][1] = FIXED_SUM(4, 5, 4, 6, TableMiddleOf(&table[1], 1), v, &dipole[1], cells);
+  sum[1][2] = FIXED_SUM(4, 5, 5, 5, TableMiddleOf(&table[1], 2), v, &dipole[2], cells);
 }
 
-void StencilRowAdd(const OffsetTable *t, OffsetBlock b, const PaddedStencil *response, const PaddedStencil *source,
-                   const PetscInt cells[2], PetscReal factor, PetscInt n, PetscReal sum[]) {
-  const PetscInt width = 2 * t->size[0] + 1, rows = response->n[1] + source->n[1] - 1;
-  const PetscInt lags = response->n[0] + source->n[0] - 1;
+void StencilRowAdd(const OffsetEntry *t, const PaddedStencil *response, const PaddedStencil *source, PetscReal factor,
+                   PetscInt n, PetscReal sum[]) {
+  const TableMiddle middle = TableMiddleOf(t->table, t->block);
+  const PetscInt rows = response->n[1] + source->n[1] - 1, lags = response->n[0] + source->n[0] - 1;
   PetscReal line[STENCIL_ROW + 4 * LANES];
-  union {
-    Lanes lanes[3];
-    PetscReal weight[3 * LANES];
-  } wx, wy;
-  const PetscInt i0 = Lags(3, 0, response, source, wx.lanes) + cells[0];
-  const PetscInt j0 = Lags(3, 1, response, source, wy.lanes) + cells[1];
-  const PetscReal *value = t->value[b] + (t->size[1] + j0) * width + t->size[0] + i0;
+  StencilLags wx, wy;
+  const PetscInt i0 = StencilLagsOf(3, source->n[0], 0, response, source, &wx) + t->cells[0];
+  const PetscInt j0 = StencilLagsOf(3, source->n[1], 1, response, source, &wy) + t->cells[1];
+  const PetscReal *value = middle.value + j0 * middle.width + i0;
   for (PetscInt q = 0; q < n + lags - 1; q += LANES) {
     Lanes all = {0};
-    for (PetscInt j = 0; j < rows; j++) all += wy.weight[j] * LanesAt(value + j * width + q);
+    for (PetscInt j = 0; j < rows; j++) all += wy.weight[j] * LanesAt(value + j * middle.width + q);
     LanesPut(factor * all, line + q);
   }
   for (PetscInt i = 0; i < n; i += LANES) {
@@ -179,16 +164,17 @@ static inline PetscBool HasFixed(const PaddedStencil s[2]) {
    u one entry to the right and one below. */
 void StencilFourSums(const OffsetTable *t, const PaddedStencil a[2], const PaddedStencil b[2], const PetscInt cells[2],
                      PetscReal sum[4]) {
-  const PetscInt width = 2 * t->size[0] + 1, middle = t->size[1] * width + t->size[0];
+  const TableMiddle uu = TableMiddleOf(t, OFFSET_UU), vv = TableMiddleOf(t, OFFSET_VV),
+                    vu = TableMiddleOf(t, OFFSET_VU), uv = {vu.value + 1 - vu.width, vu.width};
   if (HasFixed(a) && HasFixed(b)) {
-    sum[0] = FixedSum(5, 4, 5, 4, t->value[OFFSET_UU] + middle, width, &a[0], &b[0], cells);
-    sum[1] = FixedSum(4, 5, 4, 5, t->value[OFFSET_VV] + middle, width, &a[1], &b[1], cells);
-    sum[2] = FixedSum(5, 4, 4, 5, t->value[OFFSET_VU] + middle + 1 - width, width, &a[0], &b[1], cells);
-    sum[3] = FixedSum(4, 5, 5, 4, t->value[OFFSET_VU] + middle, width, &a[1], &b[0], cells);
+    sum[0] = FIXED_SUM(5, 4, 5, 4, uu, &a[0], &b[0], cells);
+    sum[1] = FIXED_SUM(4, 5, 4, 5, vv, &a[1], &b[1], cells);
+    sum[2] = FIXED_SUM(5, 4, 4, 5, uv, &a[0], &b[1], cells);
+    sum[3] = FIXED_SUM(4, 5, 5, 4, vu, &a[1], &b[0], cells);
     return;
   }
-  sum[0] = TableSum(t->value[OFFSET_UU] + middle, width, &a[0], &b[0], cells);
-  sum[1] = TableSum(t->value[OFFSET_VV] + middle, width, &a[1], &b[1], cells);
-  sum[2] = TableSum(t->value[OFFSET_VU] + middle + 1 - width, width, &a[0], &b[1], cells);
-  sum[3] = TableSum(t->value[OFFSET_VU] + middle, width, &a[1], &b[0], cells);
+  sum[0] = AnySum(uu, &a[0], &b[0], cells);
+  sum[1] = AnySum(vv, &a[1], &b[1], cells);
+  sum[2] = AnySum(uv, &a[0], &b[1], cells);
+  sum[3] = AnySum(vu, &a[1], &b[0], cells);
 }

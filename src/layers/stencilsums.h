@@ -54,9 +54,15 @@ PETSC_EXTERN void StencilFourSums(const OffsetTable *table, const PaddedStencil 
 PETSC_EXTERN void StencilDipoleSums(const OffsetTable table[2], const PaddedStencil response[2],
                                     const PaddedStencil dipole[3], const PetscInt cells[2], PetscReal sum[2][3]);
 
-/* StencilRowAdd - sum[i] += factor times one block's double sum, `cells` being added to the offset, of the response
-   moved by i cells along x, i = 0 .. n - 1, n at most STENCIL_ROW. Far within the table. Not collective. */
+/* Where a sum starts in a table: a block, and what is added to the offset. */
+typedef struct {
+  const OffsetTable *table;
+  OffsetBlock block;
+  PetscInt cells[2];
+} OffsetEntry;
+
+/* StencilRowAdd - sum[i] += factor times the entry's double sum of the response moved by i cells along x, i = 0 .. n -
+   1, n at most STENCIL_ROW. Far within the table. Not collective. */
 #define STENCIL_ROW 48
-PETSC_EXTERN void StencilRowAdd(const OffsetTable *table, OffsetBlock block, const PaddedStencil *response,
-                                const PaddedStencil *source, const PetscInt cells[2], PetscReal factor, PetscInt n,
-                                PetscReal sum[]);
+PETSC_EXTERN void StencilRowAdd(const OffsetEntry *entry, const PaddedStencil *response, const PaddedStencil *source,
+                                PetscReal factor, PetscInt n, PetscReal sum[]);
