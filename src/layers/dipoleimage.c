@@ -12,14 +12,13 @@
    above it is what is left of that. Of SHEAR the along form is -2 times that of STRAIN, the across one twice.
  */
 #include "layers/dipoleimage.h"
-#include "layers/latticegreen.h"
 
 static PetscReal G1(const ImageMode *m, int j) {
   return m->F[j] + m->s * m->g2[j];
 }
 
 /* psi of a part in a row of cells or nodes: xx = STRAIN + SOURCE/2, yy = -STRAIN + SOURCE/2, xy = SHEAR. */
-static void Psi(const ImageMode *m, DipolePart part, int j, PetscReal psi[IMAGE_LINES]) {
+static void DipolePsi(const ImageMode *m, int part, int j, PetscReal psi[IMAGE_LINES]) {
   const int before = j ? j - 1 : 1;
   const PetscReal strain = part == DIPOLE_XX ? m->k : -m->k;
   if (part == DIPOLE_XY)
@@ -30,62 +29,15 @@ static void Psi(const ImageMode *m, DipolePart part, int j, PetscReal psi[IMAGE_
              -strain * (m->F[j + 1] + m->F[j]) - 0.5 * m->k * (G1(m, j + 1) + G1(m, j)), psi);
 }
 
-/* Add one node of the quadrature to offsets from 0 or 1 on. */
-static void AddNode(PetscReal theta, PetscReal weight, DipoleImageTable *t) {
-  const ImageMode m = ImageModeMake(theta);
-  PetscReal cosine[IMAGE_SHIFT + 1], right[IMAGE_SHIFT + 1], left[IMAGE_SHIFT + 1], psi[IMAGE_LINES];
-  for (int i = 0; i <= IMAGE_SHIFT; i++) {
-    cosine[i] = weight / PETSC_PI * PetscCosReal(i * theta);
-    right[i] = weight / PETSC_PI * PetscSinReal((i + 0.5) * theta);
-    left[i] = weight / PETSC_PI * PetscSinReal((i - 0.5) * theta);
-  }
-  for (int part = 0; part < DIPOLE_COUNT; part++)
-    for (int source = 0; source < IMAGE_ROWS; source++) {
-      const PetscBool shear = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE;
-      const PetscReal *wave[2] = {shear ? cosine : right, shear ? left : cosine};
-      Psi(&m, (DipolePart)part, source, psi);
-      for (int row = 0; row < IMAGE_ROWS; row++) {
-        const PetscReal size[2] = {(shear ? 1 : -1) * (psi[row + 1] - psi[row]), m.k * psi[row]};
-        for (int c = 0; c < 2; c++) {
-          PetscReal *line = t->value[part][c][row][source] + IMAGE_SHIFT;
-          for (int i = 0; i <= IMAGE_SHIFT; i++) line[i] += size[c] * wave[c][i];
-        }
-      }
-    }
-}
-
-/* Offsets below zero by symmetry, and the free lattice's part: in its table the across component lies above the along
-   one of the same row, a node above the cell. */
-static void Complete(const OffsetTable lattice[2], DipolePart part, int c, PetscInt row, PetscInt source,
-                     DipoleImageTable *t) {
-  PetscReal *line = t->value[part][c][row][source] + IMAGE_SHIFT;
-  const PetscInt rows = row - source - c + (part == DIPOLE_XY);
-  const PetscBool even = (part == DIPOLE_XY) != c ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt i = 1; i <= IMAGE_SHIFT; i++) {
-    if (even)
-      line[-i] = line[i];
-    else if (c)
-      line[1 - i] = -line[i];
-    else
-      line[-i] = -line[i - 1];
-  }
-  const OffsetTable *free = &lattice[c];
-  const PetscReal *value = free->value[part] + (rows + free->size[1]) * (2 * free->size[0] + 1) + free->size[0];
-  for (PetscInt i = -IMAGE_SHIFT; i <= IMAGE_SHIFT; i++) line[i] += value[i];
-}
-
+/* In the lattice's table the across component lies above the along one of the same row, a node above the cell. */
 PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *t) {
-  PetscReal *theta, *weight;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(IMAGE_NODES, &theta, IMAGE_NODES, &weight));
-  GaussLegendre(IMAGE_NODES, theta, weight);
-  PetscCall(PetscMemzero(t, sizeof(*t)));
-  for (int q = 0; q < IMAGE_NODES; q++) AddNode(theta[q], weight[q], t);
   for (int part = 0; part < DIPOLE_COUNT; part++)
-    for (int c = 0; c < 2; c++)
-      for (int row = 0; row < IMAGE_ROWS; row++)
-        for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, (DipolePart)part, c, row, source, t);
-  PetscCall(PetscFree2(theta, weight));
+    for (int c = 0; c < 2; c++) {
+      const int shear = part == DIPOLE_XY;
+      const ImageBlock block = {DipolePsi, &lattice[c], part, c, .half = 1 - shear - c, .below = c - shear};
+      PetscCall(ImageBlockFill(&block, t->value[part][c]));
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,7 +18,8 @@
 #include "numerics/blas.h"
 #include "layers/latticegreen.h"
 
-ImageMode ImageModeMake(PetscReal theta) {
+/* Of the wave number theta. */
+static ImageMode ImageModeMake(PetscReal theta) {
   const PetscReal half = PetscSinReal(0.5 * theta), mu = 2 * PetscAsinhReal(half);
   ImageMode m = {.k = 2 * half, .s = 4 * half * half, .sinh = PetscSinhReal(mu), .cosh = PetscCoshReal(mu)};
   for (int j = 0; j < IMAGE_LINES; j++) {
@@ -34,94 +35,77 @@ void ImagePsi(const ImageMode *m, PetscReal A, PetscReal jump, PetscReal psi[IMA
   for (int q = 0; q < IMAGE_LINES; q++) psi[q] = (A + B * q) * m->e[q];
 }
 
-/* psi of a source in row j, t or n. */
-static void Psi(const ImageMode *m, PetscBool normal, int j, PetscReal psi[IMAGE_LINES]) {
-  const PetscReal before = m->g2[j > 0 ? j - 1 : 1];
-  const PetscReal A = normal ? m->g2[j] : m->g2[j] - m->g2[j + 1];
-  const PetscReal jump = normal ? m->g2[j + 1] - before : m->F[j + 1] + m->F[j];
-  ImagePsi(m, A, jump, psi);
-}
-
 #define SHIFTS (IMAGE_SHIFT + 1)
 #define PAIRS (IMAGE_ROWS * IMAGE_ROWS)
 
-/* Node by node the waves along the wall, at offsets 0 .. IMAGE_SHIFT, and what a source in one row does in another. */
+/* A block's wave along the wall, at offsets 0 .. IMAGE_SHIFT, and what a source in one row does in another. */
 typedef struct {
-  PetscReal even[IMAGE_NODES][SHIFTS], odd[IMAGE_NODES][SHIFTS], across[OFFSET_COUNT][PAIRS][IMAGE_NODES];
-} Nodes;
+  PetscReal wave[IMAGE_NODES][SHIFTS], across[PAIRS][IMAGE_NODES];
+} ImageNodes;
 
-static void SetNode(PetscReal theta, PetscReal weight, PetscInt q, Nodes *a) {
+static void ImageNodeSet(const ImageBlock *b, PetscReal theta, PetscReal weight, PetscInt q, ImageNodes *a) {
   const ImageMode m = ImageModeMake(theta);
   const PetscReal w = weight / PETSC_PI;
-  PetscReal tangent[IMAGE_LINES], normal[IMAGE_LINES];
-  for (int i = 0; i <= IMAGE_SHIFT; i++) {
-    a->even[q][i] = w * PetscCosReal(i * theta);
-    a->odd[q][i] = w * m.k * PetscSinReal((i + 0.5) * theta);
-  }
+  PetscReal psi[IMAGE_LINES];
+  for (int i = 0; i <= IMAGE_SHIFT; i++)
+    a->wave[q][i] = w * (b->half ? PetscSinReal((i + 0.5 * b->half) * theta) : PetscCosReal(i * theta));
   for (int source = 0; source < IMAGE_ROWS; source++) {
-    Psi(&m, PETSC_FALSE, source, tangent);
-    Psi(&m, PETSC_TRUE, source, normal);
-    for (int row = 0; row < IMAGE_ROWS; row++) {
-      const int pair = row * IMAGE_ROWS + source;
-      a->across[OFFSET_UU][pair][q] = tangent[row + 1] - tangent[row];
-      a->across[OFFSET_VV][pair][q] = -m.s * normal[row];
-      a->across[OFFSET_VU][pair][q] = tangent[row];
-    }
+    b->psi(&m, b->source, source, psi);
+    for (int row = 0; row < IMAGE_ROWS; row++)
+      a->across[row * IMAGE_ROWS + source][q] = b->component ? m.k * psi[row]
+                                                             : (b->half ? -1 : 1) * (psi[row + 1] - psi[row]);
   }
 }
 
-/* The quadrature's sums, added to offsets 0 .. IMAGE_SHIFT. */
-static PetscErrorCode AddNodes(const PetscReal theta[], const PetscReal weight[], ImageTable *t) {
-  Nodes *a;
+/* A line's offsets below zero by symmetry, and the free lattice's part. */
+static void ImageLineComplete(const ImageBlock *b, PetscInt rows, PetscReal line[]) {
+  const OffsetTable *t = b->lattice;
+  const PetscReal *free = t->value[b->source] + (rows + t->size[1]) * (2 * t->size[0] + 1) + t->size[0];
+  for (PetscInt i = 1; i <= IMAGE_SHIFT && i - b->half <= IMAGE_SHIFT; i++)
+    line[-i] = b->half ? -line[i - b->half] : line[i];
+  for (PetscInt i = -IMAGE_SHIFT; i <= IMAGE_SHIFT; i++) line[i] += free[i];
+}
+
+PetscErrorCode ImageBlockFill(const ImageBlock *b, PetscReal value[IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH]) {
+  PetscReal theta[IMAGE_NODES], weight[IMAGE_NODES];
+  ImageNodes *a;
   PetscFunctionBeginUser;
+  GaussLegendre(IMAGE_NODES, theta, weight);
   PetscCall(PetscMalloc1(1, &a));
-  for (int q = 0; q < IMAGE_NODES; q++) SetNode(theta[q], weight[q], q, a);
-  for (int b = 0; b < OFFSET_COUNT; b++) {
-    PetscReal *first = t->value[b][0][0] + IMAGE_SHIFT + (b == OFFSET_VU ? 1 : 0);
-    const PetscBool odd = b == OFFSET_VU ? PETSC_TRUE : PETSC_FALSE;
-    const DenseView shift = {odd ? a->odd[0] : a->even[0], odd ? IMAGE_SHIFT : SHIFTS, IMAGE_NODES, SHIFTS};
-    const DenseView across = {a->across[b][0], IMAGE_NODES, PAIRS, IMAGE_NODES};
-    PetscCall(DenseProductWithin(PETSC_FALSE, shift, across, 1, first, IMAGE_WIDTH));
-  }
+  for (int q = 0; q < IMAGE_NODES; q++) ImageNodeSet(b, theta[q], weight[q], q, a);
+  for (int row = 0; row < IMAGE_ROWS; row++)
+    for (int source = 0; source < IMAGE_ROWS; source++)
+      for (int i = 0; i < IMAGE_WIDTH; i++) value[row][source][i] = b->level;
+  const DenseView wave = {a->wave[0], SHIFTS, IMAGE_NODES, SHIFTS};
+  const DenseView across = {a->across[0], IMAGE_NODES, PAIRS, IMAGE_NODES};
+  PetscCall(DenseProductWithin(PETSC_FALSE, wave, across, 1, value[0][0] + IMAGE_SHIFT, IMAGE_WIDTH));
+  for (int row = 0; row < IMAGE_ROWS; row++)
+    for (int source = 0; source < IMAGE_ROWS; source++)
+      ImageLineComplete(b, row - source - b->below, value[row][source] + IMAGE_SHIFT);
   PetscCall(PetscFree(a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The free lattice's part, and offsets below zero by symmetry. */
-static void Complete(const OffsetTable *lattice, PetscInt row, PetscInt source, ImageTable *t) {
-  PetscReal *line[OFFSET_COUNT];
-  const PetscReal *free[OFFSET_COUNT];
-  for (int b = 0; b < OFFSET_COUNT; b++) { /* in the lattice's table n lies half a cell above t of the same row */
-    const PetscInt rows = row - source - (b == OFFSET_VU ? 1 : 0);
-    line[b] = t->value[b][row][source] + IMAGE_SHIFT;
-    free[b] = lattice->value[b] + (rows + lattice->size[1]) * (2 * lattice->size[0] + 1) + lattice->size[0];
-  }
-  for (PetscInt i = 1; i <= IMAGE_SHIFT; i++) {
-    line[OFFSET_UU][-i] = line[OFFSET_UU][i];
-    line[OFFSET_VV][-i] = line[OFFSET_VV][i];
-    line[OFFSET_VU][1 - i] = -line[OFFSET_VU][i];
-  }
-  for (PetscInt i = -IMAGE_SHIFT; i <= IMAGE_SHIFT; i++)
-    for (int b = 0; b < OFFSET_COUNT; b++) line[b][i] += free[b][i];
+/* psi of a force in row j: t (OFFSET_UU and OFFSET_VU) or n, whose parts are those of -k psi. */
+static void StokesletPsi(const ImageMode *m, int source, int j, PetscReal psi[IMAGE_LINES]) {
+  const PetscReal before = m->g2[j > 0 ? j - 1 : 1];
+  if (source == OFFSET_VV)
+    ImagePsi(m, -m->k * m->g2[j], -m->k * (m->g2[j + 1] - before), psi);
+  else
+    ImagePsi(m, m->g2[j] - m->g2[j + 1], m->F[j + 1] + m->F[j], psi);
 }
 
-/* All rows, from a lattice's table that reaches far enough. The quadrature's part that is the same everywhere goes with
-   the constants. */
+/* The quadrature's part that is the same everywhere goes with the constants. */
 PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
   PetscReal theta[IMAGE_NODES], weight[IMAGE_NODES], level = -LatticeConstant();
   PetscFunctionBeginUser;
   GaussLegendre(IMAGE_NODES, theta, weight);
   for (int q = 0; q < IMAGE_NODES; q++) level += weight[q] / (4 * PETSC_PI * theta[q]);
-  PetscCall(PetscMemzero(t, sizeof(*t)));
-  for (int row = 0; row < IMAGE_ROWS; row++)
-    for (int source = 0; source < IMAGE_ROWS; source++)
-      for (int i = 0; i <= IMAGE_SHIFT; i++) {
-        t->value[OFFSET_UU][row][source][IMAGE_SHIFT + i] = level;
-        t->value[OFFSET_VV][row][source][IMAGE_SHIFT + i] = 1 / (4 * PETSC_PI) + level;
-      }
-  PetscCall(AddNodes(theta, weight, t));
-  for (int row = 0; row < IMAGE_ROWS; row++)
-    for (int source = 0; source < IMAGE_ROWS; source++) Complete(lattice, row, source, t);
+  const ImageBlock block[OFFSET_COUNT] = {
+      [OFFSET_UU] = {StokesletPsi, lattice, OFFSET_UU, .level = level},
+      [OFFSET_VV] = {StokesletPsi, lattice, OFFSET_VV, .component = 1, .level = 1 / (4 * PETSC_PI) + level},
+      [OFFSET_VU] = {StokesletPsi, lattice, OFFSET_VU, .component = 1, .half = -1, .below = 1}};
+  for (int b = 0; b < OFFSET_COUNT; b++) PetscCall(ImageBlockFill(&block[b], t->value[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

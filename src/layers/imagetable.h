@@ -29,10 +29,24 @@ typedef struct {
   PetscReal k, s, sinh, cosh, F[IMAGE_LINES], g2[IMAGE_LINES], e[IMAGE_LINES];
 } ImageMode;
 
-/* ImageModeMake - of the wave number theta. ImagePsi - psi(j) = (A + B j) e^{-mu j} of A and of minus the sum of psi's
-   next neighbours, psi(1) - psi(-1) = -jump. Not collective. */
-PETSC_EXTERN ImageMode ImageModeMake(PetscReal theta);
+/* ImagePsi - psi(j) = (A + B j) e^{-mu j} of A and of minus the sum of psi's next neighbours, psi(1) - psi(-1) = -jump.
+   Not collective. */
 PETSC_EXTERN void ImagePsi(const ImageMode *mode, PetscReal A, PetscReal jump, PetscReal psi[IMAGE_LINES]);
+
+/* A block of a table of the half-space lattice. Of psi a response along the wall has the difference from its row to the
+   next, minus that with half = 1, one across it has k psi; along the wall, i the offset, times cos(i theta) or, with
+   half = -1 or 1, sin((i + half/2) theta). ImageBlockFill - all its rows. Not collective. */
+typedef struct {
+  void (*psi)(const ImageMode *mode, int source, int row, PetscReal psi[IMAGE_LINES]); /* of a source in this row */
+  const OffsetTable *lattice; /* the free lattice's, of a reach of IMAGE_SHIFT at least */
+  int source;                 /* the block in it */
+  int component;              /* of the response: 0 along the wall, 1 across it */
+  int half;
+  int below;       /* off the offset across the wall in the lattice's table */
+  PetscReal level; /* of all entries */
+} ImageBlock;
+PETSC_EXTERN PetscErrorCode ImageBlockFill(const ImageBlock *block,
+                                           PetscReal value[IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH]);
 
 /* A stencil at a wall: its rows from the wall, folded, and the stencil itself, which counts along the wall. */
 typedef struct {
