@@ -231,12 +231,46 @@ static void End(Fill *f, const PetscReal own[3], PetscReal value[]) {
   y[0] += f->part[k] * own[2];
 }
 
+/* Parts in a block: from J_x to u, v, then from J_y. */
+static void DoubleBlockKernel(const void *context, int wall, const Lanes x[2], const PetscReal y[2],
+                              const PetscReal N[2], Lanes K[]) {
+  const DoublePairs *s = (const DoublePairs *)context;
+  Lanes D[3], seen[3];
+  if (wall >= 0) {
+    NearImageSeen(s->single->set->markers->grid, wall, x, y, seen);
+    DoubleImageFourExact(s->image, wall, N, (const Lanes[]){seen[0], seen[1], -seen[2]}, K); /* y is mirrored */
+    return;
+  }
+  StressletFour(x[0] - y[0], x[1] - y[1], N, D);
+  K[0] = D[0];
+  K[1] = K[2] = D[2];
+  K[3] = D[1];
+}
+
+PetscErrorCode DoubleBlockRefine(const DoublePairs *s, const FinePair *pair, PetscReal value[]) {
+  const Layout l = s->single->set->markers->layout;
+  const PetscInt n = LayoutCount(l, pair->row), m = LayoutCount(l, pair->column);
+  const FineKernel kernel = {4, DoubleBlockKernel, s, s->normal + 2 * l->start[pair->column]};
+  PetscReal *part;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * n * m, &part));
+  PetscCall(FinePairParts(s->single->set, pair, &kernel, part));
+  for (PetscInt k = 0; k < 4 * n * m; k++) {
+    const PetscInt c = k / (n * m), j = k / n % m, i = k % n;
+    value[(2 * j + c / 2) * 2 * n + 2 * i + c % 2] += part[k];
+  }
+  PetscCall(PetscFree(part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DoubleBlockFill(const DoublePairs *s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
   const LayerSetting *set = s->single->set;
   const PetscInt n = LayoutCount(set->markers->layout, b->row), m = LayoutCount(set->markers->layout, b->column);
   const PetscInt first = set->markers->layout->start[b->column];
   const PetscReal reach = set->box ? PETSC_MAX_REAL : DOUBLE_IMAGE_REACH;
   PetscReal *own = NULL;
+  FinePair atwall[4];
+  PetscInt walls;
   Fill f;
   PetscFunctionBeginUser;
   PetscCall(CreateFill(s, b, lattice, &f));
@@ -254,6 +288,8 @@ PetscErrorCode DoubleBlockFill(const DoublePairs *s, const DoubleBlock *b, Petsc
     const PetscReal N = s->normal[2 * first + j] / s->length[b->column];
     for (PetscInt i = 0; i < 2 * n; i++) value[j * 2 * n + i] += N * f.flux[i % 2][i / 2];
   }
+  FinePairsAtWalls(set, s->single->bounds, b->row, b->column, b->shift, atwall, &walls);
+  for (PetscInt k = 0; k < walls; k++) PetscCall(DoubleBlockRefine(s, &atwall[k], value));
   PetscCall(PetscFree(own));
   PetscCall(DipoleFacesDestroy(&f.faces));
   PetscCall(PetscFree(f.memory));

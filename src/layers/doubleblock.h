@@ -38,14 +38,12 @@ typedef struct {
   const PetscReal *length;         /* [bodies] SUM w */
 } DoublePairs;
 
-/* DoubleBlockFill - C of a block or, without lattice, D, [2 n_column][2 n_row], without finer points. DoubleBlockRefine
-   - to the block the difference between finer points of two curves near one another and their markers.
-   DoubleBlockRefineAtWalls - the same of images in walls that are nearer than two marker spacings. Not collective. */
+/* DoubleBlockFill - C of a block or, without lattice, D, [2 n_column][2 n_row], with finer points of images in walls
+   that are near. DoubleBlockRefine - to the block the difference between finer points of two curves near one another,
+   or of one and an image, and their markers. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleBlockFill(const DoublePairs *pairs, const DoubleBlock *block, PetscBool lattice,
                                             PetscReal value[]);
 PETSC_EXTERN PetscErrorCode DoubleBlockRefine(const DoublePairs *pairs, const FinePair *fine, PetscReal value[]);
-PETSC_EXTERN PetscErrorCode DoubleBlockRefineAtWalls(const DoublePairs *pairs, const DoubleBlock *block,
-                                                     PetscReal value[]);
 
 /* DoubleSelf - D of a closed curve with itself from its n markers X and their n w: [2n][2n]. Not collective. */
 PETSC_EXTERN PetscErrorCode DoubleSelf(Spectral spectral, PetscInt n, const PetscReal X[], const PetscReal normal[],

@@ -89,12 +89,6 @@ static void Half(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x, P
     }
 }
 
-void DoubleImageExact(DoubleImage m, int wall, const ImagePair *p, PetscReal exact[2][DIPOLE_COUNT]) {
-  PetscReal part[2][DIPOLE_COUNT];
-  DipoleImageExact(&m->forms, p, part);
-  Turn(wall, 1 / m->single->markers->grid->h, PARTS(part), exact);
-}
-
 /* What a wall adds for a pair: to exact fluid, to the lattice, and how much of each component of the lattice's answer
    without walls is to be taken off. */
 typedef struct {
@@ -107,7 +101,8 @@ static AtWall AtWallOf(DoubleImage m, int wall, PetscInt i, PetscInt j, const Pe
   const ImagePair p = {d[1 - wall / 2] * over, y[i], y[j]};
   AtWall a = {.less = {1, 1}};
   PetscReal part[2][DIPOLE_COUNT];
-  DoubleImageExact(m, wall, &p, a.exact);
+  DipoleImageExact(&m->forms, &p, part);
+  Turn(wall, over, PARTS(part), a.exact);
   if (!lattice) return a;
   if (NearImageIsNear(&p)) {
     Half(m, wall, i, j, p.x, part);
@@ -159,34 +154,52 @@ static void AddPairs(DoubleImage m, int wall, PetscReal reach, const DoubleColum
   }
 }
 
-/* x += a, or -a. */
-static inline void AddFour(PetscBool turned, Lanes a, PetscReal x[]) {
-  LanesPut(turned ? LanesAt(x) - a : LanesAt(x) + a, x);
+/* One marker's dipoles seen from a wall: scale: 1 over the length that N has. */
+static void DoubleImageSourceMake(DoubleImage m, int wall, const PetscReal N[2], PetscReal over, DipoleImageSource *s) {
+  const PetscReal seen[2] = {N[1 - wall / 2], wall % 2 ? -N[wall / 2] : N[wall / 2]};
+  DipoleImageSourceMake(&m->forms, seen, 1 / m->single->markers->grid->h, over, s);
+}
+
+/* M[4] (DipoleContract) turned from a wall to x and y. */
+static inline void TurnFour(int wall, Lanes M[4]) {
+  if (wall % 2)
+    for (int q = 1; q < 3; q++) M[q] = -M[q];
+  if (wall / 2) return;
+  for (int q = 0; q < 2; q++) {
+    const Lanes kept = M[q];
+    M[q] = M[3 - q];
+    M[3 - q] = kept;
+  }
+}
+
+void DoubleImageFourExact(DoubleImage m, int wall, const PetscReal N[2], const Lanes seen[3], Lanes M[4]) {
+  DipoleImageSource source;
+  DoubleImageSourceMake(m, wall, N, 1, &source);
+  DipoleImageFourExact(&source, seen[0], seen[1], seen[2], M);
+  TurnFour(wall, M);
 }
 
 /* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it; none of images
    beyond the reach. */
 static void AddFar(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
-  const int direction = wall / 2, side = wall % 2;
-  const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][side];
-  const PetscReal N[2] = {c->N[1 - direction], side ? -c->N[direction] : c->N[direction]};
+  const int direction = wall / 2;
+  const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][wall % 2];
   const Lanes b = y[c->j] + (Lanes){0};
   DipoleImageSource source;
-  DipoleImageSourceMake(&m->forms, N, cell, c->over, &source);
+  DoubleImageSourceMake(m, wall, c->N, c->over, &source);
   for (PetscInt k = 0; k < c->n; k += LANES) {
     const Lanes x = cell * LanesAt(c->d[1 - direction] + k), a = LanesAt(y + c->i + k);
+    const LanesBits meant = (LanesBits)(a + b < reach);
     Lanes M[4], L[2];
     if (c->lattice)
       DipoleImageFour(&source, x, a, b, M, L);
     else
       DipoleImageFourExact(&source, x, a, b, M);
-    const LanesBits meant = (LanesBits)(a + b < reach);
-    for (int to = 0; to < 2; to++) {
-      const int comp = to ? direction : 1 - direction;
-      for (int from = 0; from < 2; from++)
-        AddFour(side && to != from, LanesWhere(meant, M[2 * from + to]),
-                c->wall[2 * (from ? direction : 1 - direction) + comp] + k);
-      if (c->lattice) AddFour(side && to, LanesWhere(meant, L[to]), c->flux[comp] + k);
+    TurnFour(wall, M);
+    for (int q = 0; q < 4; q++) LanesPut(LanesAt(c->wall[q] + k) + LanesWhere(meant, M[q]), c->wall[q] + k);
+    for (int to = 0; to < 2 && c->lattice; to++) {
+      PetscReal *flux = c->flux[to ? direction : 1 - direction] + k;
+      LanesPut(LanesAt(flux) + LanesWhere(meant, wall % 2 && to ? -L[to] : L[to]), flux);
     }
   }
 }

@@ -54,9 +54,10 @@ PETSC_EXTERN void DoubleImageRange(DoubleImage image, DoubleColumn *column);
 PETSC_EXTERN void DoubleImageAddColumn(DoubleImage image, PetscReal reach, const DoubleColumn *column);
 
 /* DoubleImageAdd - of one pair, to unit tensor parts: exact +=, and lattice += image, which holds the free lattice's.
-   DoubleImageExact - exact += that of two points and one wall, 2 times the direction of its normal plus its side.
-   Not collective. */
+   DoubleImageFourExact - M[4] as DipoleContract, of four points and a source with N, whose exact image in one wall, 2
+   times the direction of its normal plus its side, it is, as they are seen from there (NearImageSeen). Not
+   collective. */
 PETSC_EXTERN void DoubleImageAdd(DoubleImage image, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal reach,
                                  PetscReal exact[2][DIPOLE_COUNT], PetscReal lattice[2][DIPOLE_COUNT]);
-PETSC_EXTERN void DoubleImageExact(DoubleImage image, int wall, const ImagePair *pair,
-                                   PetscReal exact[2][DIPOLE_COUNT]);
+PETSC_EXTERN void DoubleImageFourExact(DoubleImage image, int wall, const PetscReal N[2], const Lanes seen[3],
+                                       Lanes M[4]);

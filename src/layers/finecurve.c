@@ -133,17 +133,23 @@ PetscErrorCode FinePairGap(const LayerSetting *set, PetscInt row, PetscInt colum
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool FinePairAtWall(const LayerSetting *set, const NearBounds bounds[], int wall, FinePair *p) {
+void FinePairsAtWalls(const LayerSetting *set, const NearBounds bounds[], PetscInt row, PetscInt column,
+                      const PetscReal shift[2], FinePair pair[4], PetscInt *count) {
   const Grid g = set->markers->grid;
-  const PetscReal gap = NearImageGap(g, wall / 2, wall % 2, &bounds[p->row], &bounds[p->column]);
-  if (g->free || !g->wall[wall / 2] || gap > CLOSE_AT_WALLS * Spacing(set, p->row, p->column)) return PETSC_FALSE;
-  *p = FinePairMake(set, p->row, p->column, p->shift, gap);
-  p->wall = wall;
-  return PETSC_TRUE;
+  const CurveKind *kind = set->bodies->kind;
+  *count = 0;
+  if (g->free || kind[row].type != CURVE_CLOSED || kind[column].type != CURVE_CLOSED) return;
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal gap = NearImageGap(g, wall / 2, wall % 2, &bounds[row], &bounds[column]);
+    if (!g->wall[wall / 2] || gap > CLOSE_AT_WALLS * Spacing(set, row, column)) continue;
+    pair[*count] = FinePairMake(set, row, column, shift, gap);
+    pair[(*count)++].wall = wall;
+  }
 }
 
-/* chi K of the points in use, K[parts][count_b][count_a]. */
-static void Fill(const FinePair *pair, const FineKernel *k, const FineCurve *a, const FineCurve *b, PetscReal K[]) {
+/* chi K of the points in use, times a sign, K[parts][count_b][count_a]. */
+static void Fill(PetscReal sign, const FinePair *pair, const FineKernel *k, const FineCurve *a, const FineCurve *b,
+                 PetscReal K[]) {
   const PetscInt Q = b->n * b->f;
   for (PetscInt q = 0; q < b->count; q++) {
     const PetscReal *y = b->x + 2 * b->used[q];
@@ -157,33 +163,36 @@ static void Fill(const FinePair *pair, const FineKernel *k, const FineCurve *a, 
       k->at(k->context, pair->wall, x, y, N, value);
       for (PetscInt i = 0; i < LANES && p + i < a->count; i++) {
         const PetscReal r = PetscSqrtReal(PetscSqr(x[0][i] - y[0]) + PetscSqr(x[1][i] - y[1]));
-        const PetscReal chi = 1 - BoxSmoothStep(r, pair->window / 3, pair->window);
+        const PetscReal chi = sign * (1 - BoxSmoothStep(r, pair->window / 3, pair->window));
         for (int c = 0; c < k->parts; c++) K[(c * b->count + q) * a->count + p + i] = chi * value[c][i];
       }
     }
   }
 }
 
-PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, PetscBool fine, const FineKernel *kernel,
+PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, const FineKernel *kernel,
                              PetscReal part[]) {
   const Grid g = set->markers->grid;
   const int d = pair->wall / 2;
   PetscReal *K, *half;
   FineCurve a, b;
   PetscFunctionBeginUser;
-  PetscCall(CreateBoth(set, pair, fine ? pair->factor : 1, &a, &b));
-  for (PetscInt q = 0; q < b.n * b.f && pair->wall >= 0; q++)
-    b.x[2 * q + d] = 2 * (pair->wall % 2 ? g->hi[d] : g->lo[d]) - b.x[2 * q + d];
-  PetscCall(Use(&a, &b, pair->window));
-  PetscCall(Use(&b, &a, pair->window));
-  PetscCall(PetscMalloc2(kernel->parts * a.count * b.count, &K, a.n * b.count, &half));
-  Fill(pair, kernel, &a, &b, K);
-  for (int c = 0; c < kernel->parts; c++) { /* P_a^T K P_b */
-    PetscCall(DenseProduct(PETSC_TRUE, a.n, b.count, a.count, a.P, K + c * a.count * b.count, half));
-    PetscCall(DenseProduct(PETSC_FALSE, a.n, b.n, b.count, half, b.P, part + c * a.n * b.n));
+  for (int fine = 1; fine >= 0; fine--) {
+    PetscCall(CreateBoth(set, pair, fine ? pair->factor : 1, &a, &b));
+    for (PetscInt q = 0; q < b.n * b.f && pair->wall >= 0; q++)
+      b.x[2 * q + d] = 2 * (pair->wall % 2 ? g->hi[d] : g->lo[d]) - b.x[2 * q + d];
+    PetscCall(Use(&a, &b, pair->window));
+    PetscCall(Use(&b, &a, pair->window));
+    PetscCall(PetscMalloc2(kernel->parts * a.count * b.count, &K, a.n * b.count, &half));
+    Fill(fine ? 1 : -1, pair, kernel, &a, &b, K);
+    for (int c = 0; c < kernel->parts; c++) { /* P_a^T K P_b */
+      const DenseView left = {half, a.n, b.count, a.n}, right = {b.P, b.count, b.n, b.count};
+      PetscCall(DenseProduct(PETSC_TRUE, a.n, b.count, a.count, a.P, K + c * a.count * b.count, half));
+      PetscCall(DenseProductWithin(PETSC_FALSE, left, right, fine ? 0 : 1, part + c * a.n * b.n, a.n));
+    }
+    PetscCall(PetscFree2(K, half));
+    PetscCall(Destroy(&a));
+    PetscCall(Destroy(&b));
   }
-  PetscCall(PetscFree2(K, half));
-  PetscCall(Destroy(&a));
-  PetscCall(Destroy(&b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,7 +10,7 @@
 
    chi a window from 1 to 0 over some marker spacings. Nothing crosses ranks.
 
-   FinePairMake or FinePairAtWall says how fine and how wide, then FinePairParts gives either term. */
+   FinePairMake or FinePairsAtWalls says how fine and how wide, then FinePairParts gives the difference. */
 #pragma once
 #include "layers/imagefar.h"
 #include "layers/layersetting.h"
@@ -27,13 +27,15 @@ typedef struct {
 
 /* FinePairMake - for curves with this gap (length). FinePairGap - the gap of two curves whose markers come as near as
    gap (length): that of finer points where it may need any, else as it is; returns whether it does, by `close`.
-   FinePairAtWall - of two bodies within these bounds; false where images in the wall are farther away than two marker
-   spacings. Not collective. */
+   FinePairsAtWalls - `count` pairs of two bodies within these bounds at the walls where images are nearer than two
+   marker spacings, of closed curves only: the first marker of an open one is half a spacing off its wall. Not
+   collective. */
 PETSC_EXTERN FinePair FinePairMake(const LayerSetting *set, PetscInt row, PetscInt column, const PetscReal shift[2],
                                    PetscReal gap);
 PETSC_EXTERN PetscErrorCode FinePairGap(const LayerSetting *set, PetscInt row, PetscInt column,
                                         const PetscReal shift[2], PetscReal *gap, PetscBool *close);
-PETSC_EXTERN PetscBool FinePairAtWall(const LayerSetting *set, const NearBounds bounds[], int wall, FinePair *pair);
+PETSC_EXTERN void FinePairsAtWalls(const LayerSetting *set, const NearBounds bounds[], PetscInt row, PetscInt column,
+                                   const PetscReal shift[2], FinePair pair[4], PetscInt *count);
 
 /* A kernel of so many parts between curves: K[parts] at four points x of the row's curve, of the point y of the
    column's with N there; wall as in FinePair, y being mirrored. */
@@ -45,7 +47,6 @@ typedef struct {
   const PetscReal *normal; /* [2 n_column] N at the markers, which finer points interpolate; NULL: no N */
 } FineKernel;
 
-/* FinePairParts - part[parts][n_column][n_row] = chi K on finer points or, not `fine`, on the markers. Not collective.
- */
-PETSC_EXTERN PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, PetscBool fine,
-                                          const FineKernel *kernel, PetscReal part[]);
+/* FinePairParts - part[parts][n_column][n_row] = chi K on finer points less chi K on the markers. Not collective. */
+PETSC_EXTERN PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, const FineKernel *kernel,
+                                          PetscReal part[]);

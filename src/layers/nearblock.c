@@ -257,10 +257,53 @@ static PetscBool CountsWall(SinglePairs f, const NearBlock *b, int direction, in
   return g->wall[direction] && (f->set->box || gap < IMAGE_REACH * g->h) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Parts xx, yy, xy and, of an image, yx. */
+static void NearBlockKernel(const void *context, int wall, const Lanes x[2], const PetscReal y[2], const PetscReal N[2],
+                            Lanes K[]) {
+  const LayerSetting *set = (const LayerSetting *)context;
+  Lanes seen[3], part[IMAGE_PARTS];
+  if (wall < 0) {
+    StokesletFour(set, x[0] - y[0], x[1] - y[1], K);
+    return;
+  }
+  NearImageSeen(set->markers->grid, wall, x, y, seen);
+  NearImageBlake(seen[0], seen[1], -seen[2], part); /* y is mirrored */
+  for (int q = 0; q < IMAGE_PARTS; q++)
+    K[image_place[wall / 2][q]] = (wall % 2 && q >= IMAGE_NT ? -1 : 1) / set->nu * part[q];
+}
+
+/* Of a body with itself a block has one of the two of each pair. */
+PetscErrorCode NearBlockRefine(SinglePairs f, const NearBlock *b, const FinePair *pair, NearStore *s) {
+  static const int place[4] = {0, 2, 3, 1}; /* xx, xy of the x row, yx, yy of the y row */
+  const Layout l = f->set->markers->layout;
+  const PetscInt rows = LayoutCount(l, b->row), n = rows * LayoutCount(l, b->column);
+  const FineKernel kernel = {pair->wall < 0 ? 3 : IMAGE_PARTS, NearBlockKernel, f->set, NULL};
+  NearRow r = NearBlockBegin(l, b);
+  PetscReal *part;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(kernel.parts * n, &part));
+  PetscCall(FinePairParts(f->set, pair, &kernel, part));
+  do
+    for (PetscInt k = 0; k < r.count; k++) {
+      const PetscInt from = (r.column + k - l->start[b->column]) * rows + r.row - l->start[b->row];
+      for (int q = 0; q < 4; q++) {
+        const PetscReal *of = part + PetscMin(place[q], kernel.parts - 1) * n;
+        const PetscReal more = (NearBlockIsSelf(b) && !k ? 0.5 : 1) * of[from];
+        const size_t at = r.at + q / 2 * r.stride + 2 * k + q % 2;
+        Put(b, at, (b->single ? s->single[at] : s->value[at]) + more, s);
+      }
+    }
+  while (NearBlockNext(l, b, &r));
+  PetscCall(PetscFree(part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode NearBlockFill(SinglePairs f, const NearBlock *b, NearStore *s) {
   const Layout l = f->set->markers->layout;
   Chunk c = {.block = b, .self = NearBlockIsSelf(b), .back = b->row > b->column ? PETSC_TRUE : PETSC_FALSE};
   NearRow r = NearBlockBegin(l, b);
+  FinePair atwall[4];
+  PetscInt walls;
   PetscFunctionBeginUser;
   for (int wall = 0; wall < 4; wall++) c.walls[wall / 2][wall % 2] = CountsWall(f, b, wall / 2, wall % 2);
   c.far = &f->far[c.self ? NEAR_ONE : NEAR_TWO];
@@ -268,5 +311,7 @@ PetscErrorCode NearBlockFill(SinglePairs f, const NearBlock *b, NearStore *s) {
   do FillRow(f, &r, &c, s);
   while (NearBlockNext(l, b, &r));
   if (c.self) PetscCall(AddSelf(f, b, s));
+  FinePairsAtWalls(f->set, f->bounds, b->row, b->column, b->shift, atwall, &walls);
+  for (PetscInt k = 0; k < walls; k++) PetscCall(NearBlockRefine(f, b, &atwall[k], s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,14 +54,12 @@ static inline PetscBool NearBlockNext(Layout l, const NearBlock *b, NearRow *r) 
   return PETSC_TRUE;
 }
 
-/* NearBlockFill - the values of a block where the pairs have been placed, without finer points. NearBlockRefine - to
-   the block the difference between finer points of two curves near one another and their markers.
-   NearBlockRefineAtWalls - the same of images in walls that are nearer than two marker spacings, of closed curves only:
-   the first marker of an open one is half a spacing off its wall. Not collective. */
+/* NearBlockFill - the values of a block where the pairs have been placed, with finer points of images in walls that are
+   near. NearBlockRefine - to the block the difference between finer points of two curves near one another, or of one
+   and an image, and their markers. Not collective. */
 PETSC_EXTERN PetscErrorCode NearBlockFill(SinglePairs pairs, const NearBlock *block, NearStore *store);
 PETSC_EXTERN PetscErrorCode NearBlockRefine(SinglePairs pairs, const NearBlock *block, const FinePair *fine,
                                             NearStore *store);
-PETSC_EXTERN PetscErrorCode NearBlockRefineAtWalls(SinglePairs pairs, const NearBlock *block, NearStore *store);
 
 /* NearLatticePair - L of markers i and j, d = X_i - X_j (length) that of the image meant: xx, yy, xy (x to a force
    along y), yx. By stencils as far as the table goes, by closed form beyond. Not collective. */

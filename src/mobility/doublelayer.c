@@ -143,7 +143,6 @@ static PetscErrorCode FillBlock(DoubleLayer s, const DoubleBlock *b, PetscBool l
       break;
     }
   }
-  PetscCall(DoubleBlockRefineAtWalls(&pairs, b, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

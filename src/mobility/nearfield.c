@@ -103,7 +103,6 @@ PetscErrorCode NearFieldPlace(NearField f) {
     if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
     if (k < first) continue;
     PetscCall(NearBlockFill(f->pairs, b, s));
-    PetscCall(NearBlockRefineAtWalls(f->pairs, b, s));
   }
   for (PetscInt k = 0; k < f->list.count.closes; k++)
     if (f->list.close[k].block >= first)
