@@ -63,11 +63,11 @@ static const ImageNumbers source_form[2] = {
       {390, 6972, -240, -1200, -1240, 40, 160, 80, 80},
       {-53046, -2060352, 35316, 376056, 383616, -7560, -62160, -30240, -31360, 560, 3360, 3360, 1120, 1120}}}};
 
-void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
+void DipoleImageFormsMake(const ImageMoments kernel[2], ImageForms *f) {
   const ImageMoments m4 = ImageMomentsOf(KernelSpline4), m5 = ImageMomentsOf(KernelSpline5),
                      m6 = ImageMomentsOf(KernelSpline6);
   const ImageMoments moment[DIPOLE_COUNT][2] = {{m6, m4}, {m4, m6}, {m5, m5}};
-  *f = (DipoleImageForms){0};
+  *f = (ImageForms){0};
   for (int part = 0; part < DIPOLE_COUNT; part++)
     for (int c = 0; c < 2; c++) {
       const PetscReal strain = part == DIPOLE_XX ? 1 : part == DIPOLE_YY ? -1 : c ? 2 : -2;
@@ -75,107 +75,64 @@ void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *f) {
       ImageFormAdd(strain, &strain_form[c], over, &form);
       if (part != DIPOLE_XY) ImageFormAdd(0.5, &source_form[c], over, &form);
       ImageFormSmooth(ImageMomentsBoth(kernel[c], moment[part][0]), kernel[1 - c], moment[part][1], &form);
-      for (int m = 0; m < IMAGE_ORDERS; m++)
-        for (int k = 0; k < IMAGE_MONOMIALS; k++) f->c[m][part][c][k] = (m ? -1 : 1) * form.c[m][k] + (Lanes){0};
+      ImageFormsPut(&form, DIPOLE_COUNT * c + part, f);
     }
 }
 
-/* ImageSumOf, of coefficients that are four times each. */
-static inline Lanes SumOf(const int order, const Lanes c[], const Lanes term[]) {
-  Lanes sum = c[0] * term[0];
-  for (int k = 1; k < image_monomials[order]; k++) sum += c[k] * term[k];
-  return sum;
-}
+static const ImageKind dipole = {0, 2 * DIPOLE_COUNT, {1, 1, 0, 0, 0, 1}};
 
-/* The sums of an order. */
-static inline void Sums(const int order, const DipoleImageForms *f, const ImageTerms *t, Lanes K[2][DIPOLE_COUNT]) {
-  for (int sine = 0; sine < 2; sine++) {
-    Lanes term[IMAGE_MONOMIALS];
-    ImageProducts(order, 0, sine, t, term);
-    for (int part = 0; part < DIPOLE_COUNT; part++) {
-      const int comp = part == DIPOLE_XY ? sine : 1 - sine;
-      K[comp][part] = SumOf(order, f->c[order][part][comp], term);
-    }
-  }
-}
-
-/* The sums of an order, added to pairs that are so near. */
-static inline void AddOrder(const int order, LanesBits near, const DipoleImageForms *f, const ImageTerms *t,
-                            Lanes K[2][DIPOLE_COUNT]) {
-  Lanes more[2][DIPOLE_COUNT];
-  Sums(order, f, t, more);
-  for (int k = 0; k < 2 * DIPOLE_COUNT; k++)
-    K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] += LanesWhere(near, more[k / DIPOLE_COUNT][k % DIPOLE_COUNT]);
-}
-
-/* The second order and, with third, the third one. */
-static void AddOrders(const PetscBool third, const DipoleImageForms *f, Lanes x, Lanes a, Lanes b,
-                      Lanes K[2][DIPOLE_COUNT]) {
-  const ImageTerms t = third ? ImageTermsMake(3, x, a, b) : ImageTermsMake(2, x, a, b);
-  AddOrder(2, ImageWithin(IMAGE_SECOND, x, a, b), f, &t, K);
-  if (third) AddOrder(3, ImageWithin(IMAGE_THIRD, x, a, b), f, &t, K);
-}
-
-/* What is left of the exact image, with the terms of the first order. */
-static inline void FarSums(const DipoleImageForms *f, Lanes x, Lanes a, Lanes b, const ImageTerms *t,
-                           Lanes K[2][DIPOLE_COUNT]) {
-  Sums(1, f, t, K);
-  if (LanesAny(ImageWithin(IMAGE_THIRD, x, a, b)))
-    AddOrders(PETSC_TRUE, f, x, a, b, K);
-  else if (LanesAny(ImageWithin(IMAGE_SECOND, x, a, b)))
-    AddOrders(PETSC_FALSE, f, x, a, b, K);
-}
-
-void DipoleImageSourceMake(const DipoleImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,
+void DipoleImageSourceMake(const ImageForms *f, const PetscReal N[2], PetscReal factor, PetscReal over_length,
                            DipoleImageSource *s) {
   const PetscReal part[DIPOLE_COUNT] = {2 * N[0] * N[0], 2 * N[1] * N[1], 2 * N[0] * N[1]};
   s->forms = f;
   for (int c = 0; c < 2; c++) {
+    const Lanes(*own)[IMAGE_MONOMIALS] = f->c[0] + DIPOLE_COUNT * c;
     s->N[c] = factor * N[c];
     s->unit[c] = over_length * N[c];
     for (int k = 0; k < image_monomials[0]; k++) {
-      const Lanes both = part[DIPOLE_XX] * f->c[0][DIPOLE_XX][c][k] + part[DIPOLE_YY] * f->c[0][DIPOLE_YY][c][k];
+      const Lanes both = part[DIPOLE_XX] * own[DIPOLE_XX][k] + part[DIPOLE_YY] * own[DIPOLE_YY][k];
       s->flux[c][1 - c][k] = factor * over_length * both;
-      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * f->c[0][DIPOLE_XY][c][k];
+      s->flux[c][c][k] = factor * over_length * part[DIPOLE_XY] * own[DIPOLE_XY][k];
     }
   }
 }
 
 void DipoleImageFourExact(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4]) {
-  const ImageTerms t = ImageTermsMake(0, x, a, b);
+  ImageTerms t;
+  ImageTermsMake(0, x, a, b, &t);
   Lanes K[2][DIPOLE_COUNT];
-  Sums(0, s->forms, &t, K);
+  ImageSums(0, dipole, s->forms, &t, (Lanes *)K);
   DipoleContractFour(K, s->N, M);
 }
 
 void DipoleImageFour(const DipoleImageSource *s, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]) {
-  const ImageTerms t = ImageTermsMake(1, x, a, b);
+  ImageTerms t;
   Lanes K[2][DIPOLE_COUNT], term[2][IMAGE_MONOMIALS];
-  FarSums(s->forms, x, a, b, &t, K);
+  ImageFarSums(dipole, s->forms, (const Lanes[]){x, a, b}, &t, (Lanes *)K);
   DipoleContractFour(K, s->N, M);
   for (int sine = 0; sine < 2; sine++) ImageProducts(0, 0, sine, &t, term[sine]);
   for (int c = 0; c < 2; c++)
-    L[c] = SumOf(0, s->flux[c][0], term[0]) + SumOf(0, s->flux[c][1], term[1]) -
+    L[c] = ImageSumOf(0, s->flux[c][0], term[0]) + ImageSumOf(0, s->flux[c][1], term[1]) -
            (s->unit[0] * M[c] + s->unit[1] * M[2 + c]);
 }
 
-/* One pair's numbers, of four that are the same. */
-static void First(const Lanes four[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
-  for (int c = 0; c < 2; c++)
-    for (int part = 0; part < DIPOLE_COUNT; part++) K[c][part] = four[c][part][0];
+/* The first of four pairs. */
+static void FirstOf(const Lanes four[], PetscReal K[2][DIPOLE_COUNT]) {
+  for (int k = 0; k < 2 * DIPOLE_COUNT; k++) K[k / DIPOLE_COUNT][k % DIPOLE_COUNT] = four[k][0];
 }
 
-void DipoleImageExact(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
-  const ImageTerms t = ImageTermsMake(0, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0});
-  Lanes four[2][DIPOLE_COUNT];
-  Sums(0, f, &t, four);
-  First((const Lanes(*)[DIPOLE_COUNT])four, K);
+void DipoleImageExact(const ImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+  ImageTerms t;
+  ImageTermsMake(0, p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, &t);
+  Lanes four[2 * DIPOLE_COUNT];
+  ImageSums(0, dipole, f, &t, four);
+  FirstOf(four, K);
 }
 
-void DipoleImageFar(const DipoleImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
+void DipoleImageFar(const ImageForms *f, const ImagePair *p, PetscReal K[2][DIPOLE_COUNT]) {
   const Lanes x = p->x + (Lanes){0}, a = p->a + (Lanes){0}, b = p->b + (Lanes){0};
-  const ImageTerms t = ImageTermsMake(1, x, a, b);
-  Lanes four[2][DIPOLE_COUNT];
-  FarSums(f, x, a, b, &t, four);
-  First((const Lanes(*)[DIPOLE_COUNT])four, K);
+  ImageTerms t;
+  Lanes four[2 * DIPOLE_COUNT];
+  ImageFarSums(dipole, f, (const Lanes[]){x, a, b}, &t, four);
+  FirstOf(four, K);
 }

@@ -18,21 +18,17 @@ typedef struct {
    collective. */
 PETSC_EXTERN PetscErrorCode DipoleImageFill(const OffsetTable lattice[2], DipoleImageTable *table);
 
-/* The closed forms by order, part and component: the exact fluid's image, then what is left of it. */
-typedef struct {
-  Lanes c[IMAGE_ORDERS][DIPOLE_COUNT][2][IMAGE_MONOMIALS]; /* each four times */
-} DipoleImageForms;
-
-/* DipoleImageFormsMake - for responses with a kernel of these moments along and across. DipoleImageExact -
-   K[component][part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the order 1/R^7 up to
-   IMAGE_THIRD cells, 1/R^5 up to IMAGE_SECOND and 1/R^3 beyond, R the distance from the image. Not collective. */
-PETSC_EXTERN void DipoleImageFormsMake(const ImageMoments kernel[2], DipoleImageForms *forms);
-PETSC_EXTERN void DipoleImageExact(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
-PETSC_EXTERN void DipoleImageFar(const DipoleImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
+/* DipoleImageFormsMake - by component and part, for responses with a kernel of these moments along and across.
+   DipoleImageExact - K[component][part] of the exact fluid's image. DipoleImageFar - that less the lattice's, to the
+   order 1/R^7 up to IMAGE_THIRD cells, 1/R^5 up to IMAGE_SECOND and 1/R^3 beyond, R the distance from the image. Not
+   collective. */
+PETSC_EXTERN void DipoleImageFormsMake(const ImageMoments kernel[2], ImageForms *forms);
+PETSC_EXTERN void DipoleImageExact(const ImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
+PETSC_EXTERN void DipoleImageFar(const ImageForms *forms, const ImagePair *pair, PetscReal K[2][DIPOLE_COUNT]);
 
 /* One marker's dipoles seen from a wall, with the polynomials of the exact image of J = n. */
 typedef struct {
-  const DipoleImageForms *forms;
+  const ImageForms *forms;
   PetscReal N[2], unit[2];           /* times the factor; over the length */
   Lanes flux[2][2][IMAGE_MONOMIALS]; /* component, real and imaginary part, monomial */
 } DipoleImageSource;
@@ -40,7 +36,7 @@ typedef struct {
 /* DipoleImageSourceMake - N = n times the marker's length, over: 1 over that; factor: of all answers. DipoleImageFour -
    of four pairs with this source, the exact image less the lattice's, as DipoleContract, M[4], and the lattice's answer
    to J = n, L[2]. DipoleImageFourExact - the exact image alone, M[4]. Not collective. */
-PETSC_EXTERN void DipoleImageSourceMake(const DipoleImageForms *forms, const PetscReal N[2], PetscReal factor,
-                                        PetscReal over, DipoleImageSource *source);
+PETSC_EXTERN void DipoleImageSourceMake(const ImageForms *forms, const PetscReal N[2], PetscReal factor, PetscReal over,
+                                        DipoleImageSource *source);
 PETSC_EXTERN void DipoleImageFour(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4], Lanes L[2]);
 PETSC_EXTERN void DipoleImageFourExact(const DipoleImageSource *source, Lanes x, Lanes a, Lanes b, Lanes M[4]);

@@ -21,7 +21,7 @@ typedef struct _p_DoubleImage *DoubleImage;
 struct _p_DoubleImage {
   NearImage single; /* borrowed: where the markers see the walls, and the stencils of their velocities */
   DipoleImageTable *table;
-  DipoleImageForms forms;
+  ImageForms forms;
   DipoleEnd *end[2][2];        /* [M] by direction of the normal and side; NULL without a wall */
   const PaddedStencil *dipole; /* [DIPOLE_COUNT M] unfolded, borrowed */
 };

@@ -14,18 +14,11 @@ typedef struct {
   PetscReal x, a, b;
 } ImagePair;
 
-/* Forms that stay the same when response and source are exchanged, by monomials and their mirror images together, and
-   those that change their sign, by a monomial less its mirror image. Each number four times. */
-#define IMAGE_EVEN 11
-#define IMAGE_ODD 8
-
-/* A kernel's moments along and across, the forms of pairs off the wall (of NT and TN the even and the odd part: NT is
-   their sum, TN the odd part less the even one), and what the first order has of a response's and a source's second
-   moment across the wall. */
+/* A kernel's moments along and across, the forms of pairs off the wall, and what the first order has of a response's
+   and of a source's second moment across the wall. */
 typedef struct {
   ImageMoments moment[2];
-  Lanes even[IMAGE_TN][IMAGE_ORDERS][IMAGE_EVEN], odd[IMAGE_ORDERS][IMAGE_ODD];
-  PetscReal bend[IMAGE_PARTS][2][IMAGE_MONOMIALS];
+  ImageForms forms, bend[2];
 } ImageKernel;
 
 /* ImageKernelMake - of a kernel. Not collective. */

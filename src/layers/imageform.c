@@ -76,9 +76,16 @@ void ImageFormSmooth(ImageMoments along, ImageMoments response, ImageMoments sou
   for (int m = 0; m < IMAGE_ORDERS; m++) Put(&p[m], m, f->c[m]);
 }
 
-void ImageFormBend(const ImageForm *f, int end, PetscReal c[IMAGE_MONOMIALS]) {
+ImageForm ImageFormBend(const ImageForm *f, int end) {
   const Polynomial twice = Across(end, Get(f, 0));
   Polynomial half = {{{0}}};
+  ImageForm bend = {{{0}}};
   Add(0.5, &twice, &half);
-  Put(&half, 1, c);
+  Put(&half, 1, bend.c[1]);
+  return bend;
+}
+
+void ImageFormsPut(const ImageForm *form, int part, ImageForms *f) {
+  for (int m = 0; m < IMAGE_ORDERS; m++)
+    for (int k = 0; k < IMAGE_MONOMIALS; k++) f->c[m][part][k] = (m ? -1 : 1) * form->c[m][k] + (Lanes){0};
 }

@@ -38,65 +38,101 @@ typedef struct {
   PetscReal second, fourth, sixth;
 } ImageMoments;
 
+/* The forms of all parts of a kind of source: the exact fluid's image, then what is left of it when the lattice makes
+   the image, minus the orders above. */
+#define IMAGE_MOST_PARTS 6
+typedef struct {
+  Lanes c[IMAGE_ORDERS][IMAGE_MOST_PARTS][IMAGE_MONOMIALS]; /* each number four times */
+} ImageForms;
+
 /* ImageMomentsOf - of weights. ImageMomentsBoth - of one kernel after the other. ImageFormAdd - to += alpha times the
    form of these numbers. ImageFormSmooth - the form through kernels of these moments: along the wall those of both ends
    together, across it of the response and of the source. ImageFormBend - what a second moment of 1 of the response (end
-   0) or of the source (1) across the wall adds to the first order of p. Not collective. */
+   0) or of the source (1) across the wall adds to the first order. ImageFormsPut - a form as one of the parts. Not
+   collective. */
 PETSC_EXTERN ImageMoments ImageMomentsOf(KernelWeights weights);
 PETSC_EXTERN ImageMoments ImageMomentsBoth(ImageMoments one, ImageMoments other);
 PETSC_EXTERN void ImageFormAdd(PetscReal alpha, const ImageNumbers *number, const PetscReal over[IMAGE_ORDERS],
                                ImageForm *to);
 PETSC_EXTERN void ImageFormSmooth(ImageMoments along, ImageMoments response, ImageMoments source, ImageForm *form);
-PETSC_EXTERN void ImageFormBend(const ImageForm *form, int end, PetscReal c[IMAGE_MONOMIALS]);
+PETSC_EXTERN ImageForm ImageFormBend(const ImageForm *form, int end);
+PETSC_EXTERN void ImageFormsPut(const ImageForm *form, int part, ImageForms *forms);
 
-/* Of four pairs: n!/z^{n+1}/(4 pi), its real and its imaginary part; with all monomials. */
+/* A kind of source: n0, and whether each part's wave along the wall is a sine. */
 typedef struct {
-  Lanes power[IMAGE_POWERS][2];
-} ImagePowers;
+  int n0, parts, sine[IMAGE_MOST_PARTS];
+} ImageKind;
+
+/* Of four pairs: all monomials, and n!/z^{n+1}/(4 pi), its real and its imaginary part. */
 typedef struct {
-  Lanes monomial[IMAGE_MONOMIALS];
-  ImagePowers powers;
+  Lanes monomial[IMAGE_MONOMIALS], power[IMAGE_POWERS][2];
 } ImageTerms;
 
-/* ImagePowersMake, ImageTermsMake - for orders up to this one, H = a + b. ImageProducts - monomials times powers of an
-   order with this n0, their real (0) or imaginary part (1). ImageSumOf - of an order's. ImageWithin - which pairs are
-   within that many cells. Not collective. */
-static inline ImagePowers ImagePowersMake(const int order, Lanes x, Lanes H) {
-  const Lanes over = 1 / (H * H + x * x), u = H * over, v = x * over;
+/* Orders and kinds are constants where these functions are called. */
+#define IMAGE_INLINE __attribute__((always_inline)) static inline
+
+/* ImageTermsMake - for orders up to this one. ImageProducts - monomials times powers of an order with this n0, their
+   real (0) or imaginary part (1). ImageSumOf - of an order's. ImageWithin - which pairs are within that many cells.
+   ImageSums - an order's sums of all parts. ImageAddOrder - of an order, added where meant. ImageOrders - of the first
+   order to the last one, x, a and b being at[3]. ImageFarSums - of all orders that count, with their terms. Not
+   collective. */
+IMAGE_INLINE void ImageTermsMake(const int order, Lanes x, Lanes a, Lanes b, ImageTerms *t) {
+  const Lanes ab = a * b, aa = a * a, bb = b * b;
+  const Lanes monomial[IMAGE_MONOMIALS] = {
+      1 + (Lanes){0}, a,       b,       ab,      aa,      bb,          a * ab,      ab * b,      aa * a,     bb * b,
+      aa * ab,        ab * ab, ab * bb, aa * aa, bb * bb, aa * aa * b, aa * ab * b, ab * bb * a, ab * bb * b};
+  const Lanes H = a + b, over = 1 / (H * H + x * x), u = H * over, v = x * over;
   Lanes w[2] = {u / (4 * PETSC_PI), v / (4 * PETSC_PI)};
-  ImagePowers t;
+  for (int k = 0; k < image_monomials[order]; k++) t->monomial[k] = monomial[k];
   for (int n = 0; n < 3 * (order + 1); n++) {
-    t.power[n][0] = w[0];
-    t.power[n][1] = w[1];
+    t->power[n][0] = w[0];
+    t->power[n][1] = w[1];
     const Lanes next = (n + 1) * (w[0] * u - w[1] * v);
     w[1] = (n + 1) * (w[0] * v + w[1] * u);
     w[0] = next;
   }
-  return t;
-}
-static inline ImageTerms ImageTermsMake(const int order, Lanes x, Lanes a, Lanes b) {
-  const Lanes ab = a * b, aa = a * a, bb = b * b;
-  ImageTerms t = {.monomial = {1 + (Lanes){0}, a, b, ab, aa, bb, a * ab, ab * b}};
-  t.powers = ImagePowersMake(order, x, a + b);
-  if (order >= 2) {
-    const Lanes more[] = {aa * a, bb * b, aa * ab, ab * ab, ab * bb};
-    for (int k = 0; k < 5; k++) t.monomial[image_monomials[1] + k] = more[k];
-  }
-  if (order == 3) {
-    const Lanes more[] = {aa * aa, bb * bb, aa * aa * b, aa * ab * b, ab * bb * a, ab * bb * b};
-    for (int k = 0; k < 6; k++) t.monomial[image_monomials[2] + k] = more[k];
-  }
-  return t;
 }
 static inline void ImageProducts(const int order, const int n0, const int sine, const ImageTerms *t, Lanes term[]) {
   for (int k = 0; k < image_monomials[order]; k++)
-    term[k] = t->monomial[k] * t->powers.power[n0 + 2 * order + image_degree[k]][sine];
+    term[k] = t->monomial[k] * t->power[n0 + 2 * order + image_degree[k]][sine];
 }
-static inline Lanes ImageSumOf(const int order, const PetscReal c[], const Lanes term[]) {
+static inline Lanes ImageSumOf(const int order, const Lanes c[], const Lanes term[]) {
   Lanes sum = c[0] * term[0];
   for (int k = 1; k < image_monomials[order]; k++) sum += c[k] * term[k];
   return sum;
 }
 static inline LanesBits ImageWithin(const int cells, Lanes x, Lanes a, Lanes b) {
   return (LanesBits)(x * x + (a + b) * (a + b) < cells * cells);
+}
+IMAGE_INLINE void ImageSums(const int order, const ImageKind kind, const ImageForms *f, const ImageTerms *t,
+                            Lanes sum[]) {
+  Lanes own[IMAGE_MOST_PARTS] = {{0}};
+  for (int k = 0; k < image_monomials[order]; k++) {
+    const Lanes *power = t->power[kind.n0 + 2 * order + image_degree[k]];
+    const Lanes wave[2] = {t->monomial[k] * power[0], t->monomial[k] * power[1]};
+    for (int part = 0; part < kind.parts; part++) own[part] += f->c[order][part][k] * wave[kind.sine[part]];
+  }
+  for (int part = 0; part < kind.parts; part++) sum[part] = own[part];
+}
+IMAGE_INLINE void ImageAddOrder(const int order, const ImageKind kind, LanesBits near, const ImageForms *f,
+                                const ImageTerms *t, Lanes sum[]) {
+  Lanes more[IMAGE_MOST_PARTS];
+  ImageSums(order, kind, f, t, more);
+  for (int part = 0; part < kind.parts; part++) sum[part] += LanesWhere(near, more[part]);
+}
+IMAGE_INLINE void ImageOrders(const int last, const ImageKind kind, const ImageForms *f, const Lanes at[3],
+                              ImageTerms *t, Lanes sum[]) {
+  ImageTermsMake(last, at[0], at[1], at[2], t);
+  ImageSums(1, kind, f, t, sum);
+  if (last >= 2) ImageAddOrder(2, kind, ImageWithin(IMAGE_SECOND, at[0], at[1], at[2]), f, t, sum);
+  if (last >= 3) ImageAddOrder(3, kind, ImageWithin(IMAGE_THIRD, at[0], at[1], at[2]), f, t, sum);
+}
+IMAGE_INLINE void ImageFarSums(const ImageKind kind, const ImageForms *f, const Lanes at[3], ImageTerms *t,
+                               Lanes sum[]) {
+  if (LanesAny(ImageWithin(IMAGE_THIRD, at[0], at[1], at[2])))
+    ImageOrders(3, kind, f, at, t, sum);
+  else if (LanesAny(ImageWithin(IMAGE_SECOND, at[0], at[1], at[2])))
+    ImageOrders(2, kind, f, at, t, sum);
+  else
+    ImageOrders(1, kind, f, at, t, sum);
 }
