@@ -1,4 +1,5 @@
 #include "layers/cellrow.h"
+#include "layers/nearimage.h"
 
 void CellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
   Stencil stencil;
@@ -18,15 +19,11 @@ static PetscInt OwnRow(Grid g, PetscInt j) {
 }
 
 PetscBool CellRowBegin(Grid g, PetscInt n, const PetscReal X[], PetscReal reach, CellRow *c) {
+  const NearBounds bounds = NearBoundsOf(n, X);
   *c = (CellRow){.grid = g, .n = n, .X = X, .reach = reach};
   for (int dir = 0; dir < 2; dir++) {
-    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = 0; k < n; k++) {
-      low = PetscMin(low, X[2 * k + dir]);
-      high = PetscMax(high, X[2 * k + dir]);
-    }
-    c->box[dir][0] = g->free ? 0 : (PetscInt)PetscFloorReal((low - reach - g->lo[dir]) / g->h);
-    c->box[dir][1] = g->free ? g->n[dir] - 1 : (PetscInt)PetscFloorReal((high + reach - g->lo[dir]) / g->h);
+    c->box[dir][0] = g->free ? 0 : (PetscInt)PetscFloorReal((bounds.low[dir] - reach - g->lo[dir]) / g->h);
+    c->box[dir][1] = g->free ? g->n[dir] - 1 : (PetscInt)PetscFloorReal((bounds.high[dir] + reach - g->lo[dir]) / g->h);
     if (!g->wall[dir]) continue;
     c->box[dir][0] = PetscMax(c->box[dir][0], 0);
     c->box[dir][1] = PetscMin(c->box[dir][1], g->n[dir] - 1);

@@ -1,7 +1,5 @@
 #include "layers/doubleimage.h"
 
-#define PARTS(K) ((const PetscReal(*)[DIPOLE_COUNT])(K)) /* as what is only read */
-
 PetscErrorCode DoubleImageCreate(NearImage single, const OffsetTable lattice[2], DoubleImage *out) {
   const Markers markers = single->markers;
   DoubleImage m;
@@ -50,30 +48,9 @@ void DoubleImagePlace(DoubleImage m, const PaddedStencil dipole[]) {
     }
 }
 
-/* A part, seen from a wall, in the directions of the grid, or the other way round. */
-static int Turned(int direction, int part) {
-  return direction || part == DIPOLE_XY ? part : 1 - part;
-}
-
-/* Where a component of the answer to a part, both seen from a wall, is in x and y, and its sign: what is odd in the
-   distance from the wall changes it at the upper end. */
-typedef struct {
-  int component, part;
-  PetscReal sign;
-} Place;
-static Place PlaceOf(int wall, int c, int part) {
-  const PetscBool odd = (c == 1) != (part == DIPOLE_XY) ? PETSC_TRUE : PETSC_FALSE;
-  return (Place){c ? wall / 2 : 1 - wall / 2, Turned(wall / 2, part), wall % 2 && odd ? -1 : 1};
-}
-
-/* K += alpha times a pair's parts, turned from a wall to x and y. */
-static void Turn(int wall, PetscReal alpha, const PetscReal part[2][DIPOLE_COUNT], PetscReal K[2][DIPOLE_COUNT]) {
-  for (int c = 0; c < 2; c++)
-    for (int q = 0; q < DIPOLE_COUNT; q++) {
-      const Place to = PlaceOf(wall, c, q);
-      K[to.component][to.part] += to.sign * alpha * part[c][q];
-    }
-}
+/* By component and part. */
+static const ImagePlaces dipole_places = {
+    2 * DIPOLE_COUNT, {{4, 3, 5, 1, 0, 2}, {0, 1, 2, 3, 4, 5}}, {[2] = PETSC_TRUE, [3] = PETSC_TRUE, [4] = PETSC_TRUE}};
 
 /* The half-space lattice's answer at i to the parts of j near a wall, x cells apart along it and seen from it. */
 static void Half(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal K[2][DIPOLE_COUNT]) {
@@ -84,7 +61,7 @@ static void Half(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x, P
     for (int part = 0; part < DIPOLE_COUNT; part++) {
       const ImageRows row = {e->first[c], e->n[c], e->weight[c], &m->single->stencil[2 * i + (c ? direction : t)]};
       const ImageRows source = {f->first[part], f->n[part], f->weight[part],
-                                &m->dipole[DIPOLE_COUNT * j + Turned(direction, part)]};
+                                &m->dipole[DIPOLE_COUNT * j + dipole_places.place[direction][part] % DIPOLE_COUNT]};
       K[c][part] = ImageSum(m->table->value[part][c], m->single->markers->grid, t, x, &row, &source);
     }
 }
@@ -102,15 +79,15 @@ static AtWall AtWallOf(DoubleImage m, int wall, PetscInt i, PetscInt j, const Pe
   AtWall a = {.less = {1, 1}};
   PetscReal part[2][DIPOLE_COUNT];
   DipoleImageExact(&m->forms, &p, part);
-  Turn(wall, over, PARTS(part), a.exact);
+  ImageTurn(&dipole_places, wall, over, (const PetscReal *)part, (PetscReal *)a.exact);
   if (!lattice) return a;
   if (NearImageIsNear(&p)) {
     Half(m, wall, i, j, p.x, part);
-    Turn(wall, over, PARTS(part), a.lattice);
+    ImageTurn(&dipole_places, wall, over, (const PetscReal *)part, (PetscReal *)a.lattice);
     return a;
   }
   DipoleImageFar(&m->forms, &p, part);
-  Turn(wall, -over, PARTS(part), a.lattice);
+  ImageTurn(&dipole_places, wall, -over, (const PetscReal *)part, (PetscReal *)a.lattice);
   for (int c = 0; c < 2; c++) {
     const PetscReal scale = c == wall / 2 ? m->single->end[wall / 2][wall % 2][i].scale : 1;
     a.less[c] = 1 - scale;

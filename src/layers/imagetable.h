@@ -48,6 +48,17 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode ImageBlockFill(const ImageBlock *block,
                                            PetscReal value[IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH]);
 
+/* Where the parts of a pair, seen from a wall whose normal is in this direction, are in x and y, and which are odd in
+   the distance from the wall: these change their sign at the upper end. ImageTurn - out += alpha times parts seen from
+   a wall, 2 times the direction of its normal plus its side. Not collective. */
+typedef struct {
+  int parts, place[2][6];
+  PetscBool odd[6];
+} ImagePlaces;
+static inline void ImageTurn(const ImagePlaces *p, int wall, PetscReal alpha, const PetscReal part[], PetscReal out[]) {
+  for (int q = 0; q < p->parts; q++) out[p->place[wall / 2][q]] += (wall % 2 && p->odd[q] ? -alpha : alpha) * part[q];
+}
+
 /* A stencil at a wall: its rows from the wall, folded, and the stencil itself, which counts along the wall. */
 typedef struct {
   PetscInt first, n;

@@ -21,7 +21,7 @@ typedef struct {
 } LayerSetting;
 
 /* StokesletFour - of four pairs: xx, yy, xy. StokesletOne - of one pair r apart, `more` being added to ln(r^2): what a
-   curve's quadrature has besides (SelfLogarithm). Not collective. */
+   curve's quadrature has besides. Not collective. */
 static inline void StokesletFour(const LayerSetting *set, Lanes x, Lanes y, Lanes S[3]) {
   const PetscReal factor = 1 / (4 * PETSC_PI * set->nu), over2 = 1 / PetscSqr(set->unit);
   const Lanes r2 = x * x + y * y, logarithm = -0.5 * LanesLog(over2 * r2);

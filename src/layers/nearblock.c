@@ -269,7 +269,7 @@ static void NearBlockKernel(const void *context, int wall, const Lanes x[2], con
   NearImageSeen(set->markers->grid, wall, x, y, seen);
   NearImageBlake(seen[0], seen[1], -seen[2], part); /* y is mirrored */
   for (int q = 0; q < IMAGE_PARTS; q++)
-    K[image_place[wall / 2][q]] = (wall % 2 && q >= IMAGE_NT ? -1 : 1) / set->nu * part[q];
+    K[force_places.place[wall / 2][q]] = (wall % 2 && force_places.odd[q] ? -1 : 1) / set->nu * part[q];
 }
 
 /* Of a body with itself a block has one of the two of each pair. */

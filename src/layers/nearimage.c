@@ -23,12 +23,6 @@ static void Blake(const ImagePair *p, PetscReal image[IMAGE_PARTS]) {
   for (int q = 0; q < IMAGE_PARTS; q++) image[q] = four[q][0];
 }
 
-/* C += alpha times a pair's parts, turned from a wall to x and y. */
-static void Turn(int direction, int side, PetscReal alpha, const PetscReal part[IMAGE_PARTS], PetscReal C[4]) {
-  for (int q = 0; q < IMAGE_PARTS; q++)
-    C[image_place[direction][q]] += (side && q >= IMAGE_NT ? -alpha : alpha) * part[q];
-}
-
 /* What a marker has of a wall: tangential or normal (r = 1) component. */
 static ImageRows RowsOf(NearImage m, int wall, PetscInt i, int r) {
   const ImageEnd *e = &m->end[wall / 2][wall % 2][i];
@@ -58,7 +52,7 @@ static void AddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscRe
   PetscReal blake[IMAGE_PARTS] = {0}, part[IMAGE_PARTS], free[IMAGE_PARTS] = {0};
   if (near || scaled) { /* free: the lattice's mobility without walls, seen from the wall, in cells, of viscosity 1 */
     for (int q = 0; q < IMAGE_PARTS; q++)
-      free[q] = (side && q >= IMAGE_NT ? -m->nu : m->nu) * L[image_place[direction][q]];
+      free[q] = (side && force_places.odd[q] ? -m->nu : m->nu) * L[force_places.place[direction][q]];
     free[IMAGE_TT] += m->logarithm;
     free[IMAGE_NN] += m->logarithm;
     Blake(&p, blake);
@@ -72,7 +66,7 @@ static void AddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscRe
     const PetscReal scale[IMAGE_PARTS] = {1, e->scale * f->scale, e->scale, f->scale};
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] += (1 - scale[q]) * (free[q] + blake[q] - part[q]);
   }
-  Turn(direction, side, 1 / m->nu, part, C);
+  ImageTurn(&force_places, wall, 1 / m->nu, part, C);
 }
 
 void NearImageAdd(NearImage m, const PetscBool without[2][2], PetscInt i, PetscInt j, const PetscReal d[2],
@@ -83,16 +77,15 @@ void NearImageAdd(NearImage m, const PetscBool without[2][2], PetscInt i, PetscI
 
 void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha, PetscReal C[4]) {
   const PetscReal h = m->markers->grid->h;
-  for (int direction = 0; direction < 2; direction++)
-    for (int side = 0; side < 2; side++) {
-      const PetscReal *y = m->y[direction][side];
-      PetscReal blake[IMAGE_PARTS];
-      if (!y) continue;
-      Blake(&(ImagePair){d[1 - direction] / h, y[i], y[j]}, blake);
-      blake[IMAGE_TT] += m->logarithm;
-      blake[IMAGE_NN] += m->logarithm;
-      Turn(direction, side, alpha / m->nu, blake, C);
-    }
+  for (int wall = 0; wall < 4; wall++) {
+    const PetscReal *y = m->y[wall / 2][wall % 2];
+    PetscReal blake[IMAGE_PARTS];
+    if (!y) continue;
+    Blake(&(ImagePair){d[1 - wall / 2] / h, y[i], y[j]}, blake);
+    blake[IMAGE_TT] += m->logarithm;
+    blake[IMAGE_NN] += m->logarithm;
+    ImageTurn(&force_places, wall, alpha / m->nu, blake, C);
+  }
 }
 
 NearBounds NearBoundsOf(PetscInt n, const PetscReal X[]) {
@@ -137,8 +130,8 @@ void NearImageAddFar(NearImage m, const PetscBool walls[2][2], const NearImageRo
       Lanes part[IMAGE_PARTS];
       ImageFarFour(&m->kernel, x, r->back ? other : own, r->back ? own : other, part);
       for (int q = 0; q < IMAGE_PARTS; q++) {
-        PetscReal *C = r->C[image_place[direction][q]] + k;
-        LanesPut(LanesAt(C) + alpha[q >= IMAGE_NT] * part[q], C);
+        PetscReal *C = r->C[force_places.place[direction][q]] + k;
+        LanesPut(LanesAt(C) + alpha[force_places.odd[q]] * part[q], C);
       }
     }
   }

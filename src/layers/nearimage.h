@@ -22,9 +22,9 @@ typedef struct {
   PetscReal weight[2][KERNEL_MAX_POINTS];
 } ImageEnd;
 
-/* Where a wall's parts go, seen from a wall whose normal is in this direction, among xx, yy, xy (x to a force along y),
-   yx. At the upper end of a direction the parts from normal to tangential and back change their sign. */
-static const int image_place[2][IMAGE_PARTS] = {{1, 0, 2, 3}, {0, 1, 3, 2}};
+/* The parts of a force among xx, yy, xy (x to a force along y), yx. */
+static const ImagePlaces force_places = {
+    IMAGE_PARTS, {{1, 0, 2, 3}, {0, 1, 3, 2}}, {[IMAGE_NT] = PETSC_TRUE, [IMAGE_TN] = PETSC_TRUE}};
 
 /* Least and largest x and y of some markers. NearBoundsOf - of n at X[2n]. Not collective. */
 typedef struct {

@@ -13,6 +13,7 @@
 #include "layers/layersetting.h"
 #include "layers/farform.h"
 #include "layers/nearimage.h"
+#include "numerics/spectral.h"
 
 typedef struct _p_SinglePairs *SinglePairs;
 struct _p_SinglePairs {
@@ -21,7 +22,7 @@ struct _p_SinglePairs {
   NearImage image;            /* what walls add; NULL in unbounded fluid */
   NearFar far[2];             /* closed forms of distant pairs: of one body, of two */
   PetscReal **logarithm;      /* [bodies][n] of own bodies, by difference of the markers' numbers: what the curve's
-                                 quadrature has besides ln(r^2) (SelfLogarithm); others NULL */
+                                 quadrature has besides ln(r^2); others NULL */
   PaddedStencil *stencil;     /* [2M] of u and v, unfolded, counted from the marker's own place */
   PetscReal *fourth[2][2];    /* [M] and whole vectors: a component's fourth moments along x and y less the mean ones */
   NearBounds *bounds;         /* [bodies] */
@@ -35,3 +36,14 @@ PETSC_EXTERN PetscErrorCode SinglePairsDestroy(SinglePairs *pairs);
 
 /* SinglePairsPlace - where the markers have been placed (MarkersPlace). Not collective. */
 PETSC_EXTERN PetscErrorCode SinglePairsPlace(SinglePairs pairs);
+
+/* SelfLayer - the single layer of one closed curve on itself in unbounded fluid,
+
+       S = [-1/2 ln(r^2) + r r^T/r^2]/(4 pi nu),
+
+   by Kress' quadrature (docs/nearfield.md, Pairs of markers): on n markers at the parameters t_k = 2 pi k/n the
+   trapezoidal rule takes r r^T/r^2 and ln(r^2) - ln(4 sin^2(t/2)), which are smooth, and Kress' weights take
+   ln(4 sin^2(t/2)). S[2n][2n] of the curve through the markers X[2n], entries interlaced x, y: velocity per force times
+   ds, density 1 and the viscosity and unit of length of the setting. Symmetric. Not collective. */
+PETSC_EXTERN PetscErrorCode SelfLayer(const LayerSetting *set, Spectral spectral, PetscInt n, const PetscReal X[],
+                                      PetscReal S[]);

@@ -2,7 +2,7 @@
 #include "mobility/contrast.h"
 #include "precondition/denseblock.h"
 #include "layers/doubleblock.h"
-#include "layers/selflayer.h"
+#include "layers/singlepairs.h"
 #include "numerics/blas.h"
 
 /* M = h^2 S. */

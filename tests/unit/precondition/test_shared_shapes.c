@@ -2,7 +2,7 @@
    curve, and a vesicle's problem solved by another's shape. */
 #include "numerics/packedmatrix.h"
 #include "precondition/sharedshapes.h"
-#include "layers/selflayer.h"
+#include "layers/singlepairs.h"
 #include "facts.h"
 #include "bodies/bending.h"
 
