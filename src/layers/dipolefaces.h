@@ -4,7 +4,7 @@
 
    Create for the markers of a body, then Answer for one dipole after another. */
 #pragma once
-#include "layers/latticedipole.h"
+#include "layers/latticegreen.h"
 
 /* Faces of one component: from the lattice's entry `first` of a row on, in whole vectors. */
 typedef struct {

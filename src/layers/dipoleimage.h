@@ -6,7 +6,7 @@
 #include "base/lanes.h"
 #include "layers/imagefar.h"
 #include "layers/imagetable.h"
-#include "layers/latticedipole.h"
+#include "layers/latticegreen.h"
 
 /* Velocity by part, component (along, across), row of the response (along at row + 1/2, across at row), row of the
    dipole (cells at row + 1/2, nodes at row) and entry of the response minus that of the part, as in LatticeDipoles. */

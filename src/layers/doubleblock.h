@@ -5,7 +5,7 @@
        C = D - L Q,
 
    D the stresslet of unbounded fluid, on a curve itself with its limit by the curvature, L what the same dipole gives
-   on the infinite lattice (latticedipole.h), Q what takes the net flux SUM w J.n off a body, as spreading on the grid
+   on the infinite lattice (latticegreen.h), Q what takes the net flux SUM w J.n off a body, as spreading on the grid
    does; walls add doubleimage.h. Near pairs take L from sums over stencils, those about a cell apart together
    (dipolefaces.h), distant ones from a closed form. In unbounded fluid C = D.
 

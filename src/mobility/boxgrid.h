@@ -9,7 +9,6 @@
 #include "layers/boxaxis.h"
 #include "layers/imagetable.h"
 #include "layers/latticegreen.h"
-#include "layers/latticedipole.h"
 #include "fluid/stokes/fluid.h"
 
 #define BOX_LATTICE_CELLS 30 /* reach of the lattice's tables; farther its closed form is right to 2e-7 */
