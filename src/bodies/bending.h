@@ -15,5 +15,3 @@ PETSC_EXTERN void MembraneBending(Membrane membrane, PetscReal alpha, const Pets
 
      E_B = c_b/2 SUM |D+D- X|^2 ds      (37) */
 PETSC_EXTERN PetscReal MembraneBendingEnergy(Membrane membrane, PetscInt vesicle, const PetscScalar X[]);
-
-PETSC_EXTERN PetscErrorCode ForceCreate_Bending(Bodies bodies, Grid grid, Scene scene, Force *force);

@@ -1,5 +1,5 @@
 /* Forces on the markers of membranes, one list of them for steps, stresses, energies, frames and preconditioner. A
-   force is a file of this folder and one row of the list in force.c.
+   force is a file of this folder and one row of the list in forcelist.c.
 
    A step takes a force at its new markers X = X* + Y - Y(X*), linearised at the extrapolated markers X* where it is
    placed. Minus the force is
@@ -46,8 +46,8 @@ struct _p_Forces {
   Force force[FORCES_MOST];
 };
 
-/* ForcesAdd - one more force. ForcesDestroy - all of them. ForcesFind - the context of the force of this name; NULL
-   without. ForcesReach - the farthest reach of all. Not collective. */
+/* ForcesAdd - one more force. ForcesDestroy - all of them. ForcesFind - the
+   context of the force of this name; NULL without. ForcesReach - the farthest reach of all. Not collective. */
 PETSC_EXTERN PetscErrorCode ForcesAdd(Forces forces, const Force *force);
 PETSC_EXTERN PetscErrorCode ForcesDestroy(Forces *forces);
 PETSC_EXTERN void *ForcesFind(Forces forces, const char name[]);
@@ -62,3 +62,7 @@ PETSC_EXTERN PetscErrorCode ForcesDense(Forces forces, PetscInt vesicle, PetscRe
 PETSC_EXTERN PetscErrorCode ForcesLaw(Forces forces, ForceReach first, ForceReach last, PetscReal t,
                                       const PetscScalar X[], PetscScalar F[]);
 PETSC_EXTERN PetscErrorCode ForcesSeams(Forces forces, const PetscReal Xstar[], const PetscScalar x[], PetscReal *sum);
+
+/* A row of the list: makes a force, or leaves its name NULL where the scene (NULL: none) has none of it. */
+typedef PetscErrorCode ForceCreate(Bodies bodies, Grid grid, Scene scene, Force *force);
+PETSC_EXTERN ForceCreate ForceCreate_Bending, ForceCreate_Turning, ForceCreate_Contact, ForceCreate_Gravity;

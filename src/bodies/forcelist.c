@@ -1,12 +1,6 @@
 #include "bodies/forcelist.h"
-#include "bodies/bending.h"
-#include "bodies/gravity.h"
-#include "bodies/repulsion.h"
-#include "bodies/turning.h"
 
-/* Each row makes a force, or leaves its name NULL where the scene has none of it. */
-static PetscErrorCode (*const rows[])(Bodies, Grid, Scene, Force *) = {ForceCreate_Bending, ForceCreate_Turning,
-                                                                       ForceCreate_Contact, ForceCreate_Gravity};
+static ForceCreate *const rows[] = {ForceCreate_Bending, ForceCreate_Turning, ForceCreate_Contact, ForceCreate_Gravity};
 
 PetscErrorCode ForcesCreate(Bodies bodies, Grid grid, Scene scene, Forces *out) {
   PetscFunctionBeginUser;

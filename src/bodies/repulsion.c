@@ -7,17 +7,22 @@ static PetscReal RepulsionReach(const SceneRepulsion *law) {
   return law->range + (law->adhesion > 0 ? law->band : 0);
 }
 
+/* SUM weight normal.x, x[2M]. */
+static PetscReal SpringStretch(const Spring *s, const PetscScalar x[]) {
+  PetscReal along = 0;
+  for (PetscInt i = 0; i < s->n; i++)
+    for (int c = 0; c < 2; c++) along += s->weight[i] * s->normal[c] * x[2 * s->marker[i] + c];
+  return along;
+}
+
 /* The law on a length `size` of membrane, into a spring whose geometry is known; X[2M]. With P = p size the force is
    P + stiffness (distance - SUM weight normal.(x - X)) below D. */
 static void SpringSetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[], Spring *s) {
-  PetscReal along = 0;
   const PetscReal x = (s->distance - law->range) / law->band;
   const PetscReal well = law->adhesion * size; /* depth of it */
   if (x < 0) {
-    for (PetscInt i = 0; i < s->n; i++)
-      for (int c = 0; c < 2; c++) along += s->weight[i] * s->normal[c] * X[2 * s->marker[i] + c];
     s->stiffness = law->stress * size / law->range;
-    s->push = s->stiffness * (law->range - s->distance + along);
+    s->push = s->stiffness * (law->range - s->distance + SpringStretch(s, X));
     s->energy = 0.5 * s->stiffness * PetscSqr(law->range - s->distance) - well;
   } else { /* INT of 30 y^2 (1 - y)^2 from x to 1 is 1 - 10 x^3 + 15 x^4 - 6 x^5 */
     s->push = -30 * well / law->band * PetscSqr(x * (1 - x));
@@ -92,14 +97,6 @@ static void SpringPull(const Spring *s, Layout l, PetscReal force, PetscScalar y
     if (own < 0 || own >= l->n) continue;
     for (int c = 0; c < 2; c++) y[2 * own + c] += force * s->weight[i] * s->normal[c];
   }
-}
-
-/* SUM weight normal.x, x[2M]. */
-static PetscReal SpringStretch(const Spring *s, const PetscScalar x[]) {
-  PetscReal along = 0;
-  for (PetscInt i = 0; i < s->n; i++)
-    for (int c = 0; c < 2; c++) along += s->weight[i] * s->normal[c] * x[2 * s->marker[i] + c];
-  return along;
 }
 
 static PetscErrorCode RepulsionRate(void *context, PetscReal alpha, const PetscScalar x[], PetscScalar y[]) {
@@ -177,17 +174,18 @@ static PetscErrorCode RepulsionDestroy(void *context) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Force *force) {
+PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force *force) {
   Repulsion r;
   PetscFunctionBeginUser;
+  if (!scene || scene->repulsion.stress <= 0 || !bodies->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&r));
   r->membrane = bodies->membrane;
   r->bodies = bodies;
   r->grid = grid;
-  r->law = *law;
-  for (PetscInt v = 0; v < bodies->layout->bodies && law->range <= 0; v++)
+  r->law = scene->repulsion;
+  for (PetscInt v = 0; v < bodies->layout->bodies && scene->repulsion.range <= 0; v++)
     r->law.range = PetscMax(r->law.range, EDGES * bodies->ds[v]);
-  if (law->band <= 0) r->law.band = r->law.range;
+  if (r->law.band <= 0) r->law.band = r->law.range;
   PetscCall(PetscMalloc1(2 * bodies->layout->M, &r->all));
   *force = (Force){.name = "contact",
                    .reach = FORCE_BETWEEN,
@@ -199,12 +197,5 @@ PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *l
                    .energy = RepulsionEnergy,
                    .seams = RepulsionSeams,
                    .destroy = RepulsionDestroy};
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force *force) {
-  PetscFunctionBeginUser;
-  if (scene && scene->repulsion.stress > 0 && bodies->vesicles)
-    PetscCall(RepulsionCreate(bodies, grid, &scene->repulsion, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,9 +33,3 @@ struct _p_Repulsion {
   PetscInt count;
   PetscScalar *all; /* [2(M + W)] work */
 };
-
-/* RepulsionCreate - between vesicles, and between vesicles and obstacles or walls, as the force "contact". Not
-   collective. */
-PETSC_EXTERN PetscErrorCode RepulsionCreate(Bodies bodies, Grid grid, const SceneRepulsion *law, Force *force);
-
-PETSC_EXTERN PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force *force);

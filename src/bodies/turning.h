@@ -16,5 +16,3 @@ typedef struct {
    along the new edges, as far as waves of the membrane would otherwise be unstable in a step with slow = 4 nu a0. Not
    collective. */
 PETSC_EXTERN PetscErrorCode TurningExpect(Forces forces, PetscReal slow, Vec expected);
-
-PETSC_EXTERN PetscErrorCode ForceCreate_Turning(Bodies bodies, Grid grid, Scene scene, Force *force);

@@ -87,12 +87,13 @@ static PetscErrorCode CheckSprings(const Case *c, const Force *r, Layout l, cons
 
 /* With a range shorter than every film there is neither spring nor force nor energy. */
 static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
-  SceneRepulsion law = c->law;
+  struct _p_Scene near = *m->scene;
   PetscReal *F, energy = 0, largest = 0;
   Force r;
   PetscFunctionBeginUser;
-  law.range = law.band = 1e-3;
-  PetscCall(RepulsionCreate(bodies, grid, &law, &r));
+  near.repulsion = c->law;
+  near.repulsion.range = near.repulsion.band = 1e-3;
+  PetscCall(ForceCreate_Contact(bodies, grid, &near, &r));
   PetscCall(PetscCalloc1(2 * m->M, &F));
   PetscCall(r.place(r.context, 0, X));
   PetscCall(r.law(r.context, 0, X, F));
@@ -118,7 +119,9 @@ PetscErrorCode Facts(void) {
     PetscCall(TestMembraneCreate(options, &m));
     PetscCall(GridCreate(&m.scene->fluid, &grid));
     PetscCall(BodiesCreate(m.membrane, NULL, &bodies));
-    PetscCall(RepulsionCreate(bodies, grid, &cases[k].law, &r));
+    struct _p_Scene near = *m.scene;
+    near.repulsion = cases[k].law;
+    PetscCall(ForceCreate_Contact(bodies, grid, &near, &r));
     PetscCall(PetscMalloc1(2 * m.M, &X));
     PetscCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
     PetscCall(CheckSlope(&cases[k], &r, m.layout, X));
