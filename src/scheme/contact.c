@@ -1,8 +1,7 @@
-#include "scheme/contact.h"
+#include "scheme/statechecks.h"
 #include "base/agree.h"
 #include "curve/crossing.h"
 #include "scheme/films.h"
-#include "scheme/stepcommon.h"
 
 #define CONTACT 2 /* cells between membranes below which a warning is due */
 #define CLOSE_PARTS                                                                                                    \

@@ -1,6 +1,5 @@
 #include "scheme/statechecks.h"
 #include "base/agree.h"
-#include "scheme/contact.h"
 #include "scheme/films.h"
 #include "scheme/stepcommon.h"
 
@@ -34,7 +33,7 @@ static PetscErrorCode CheckFinite(Scheme s) {
 }
 
 /* Check edge ratio, area and length of one own vesicle with markers X[2n]. */
-static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[]) {
+static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[], char failure[]) {
   const Membrane m = s->membrane;
   const Scene scene = s->scene;
   const char *const names[] = {"-limit_edge_ratio", "-limit_area_error", "-limit_length_error"};
@@ -50,25 +49,37 @@ static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[]) {
   const PetscReal found[] = {measures.edge_ratio, measures.area / m->A0[v] - 1, measures.length / m->L0[v] - 1};
   for (int k = 0; k < 3; k++) {
     if (limit[k] == 0 || PetscAbsReal(found[k]) <= limit[k]) continue;
-    PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
-                            "vesicle %" PetscInt_FMT ": %s %.3g beyond %s %g", v + 1, what[k], (double)found[k],
-                            names[k], (double)limit[k]));
+    PetscCall(PetscSNPrintf(failure, PETVES_MAX_MESSAGE, "vesicle %" PetscInt_FMT ": %s %.3g beyond %s %g", v + 1,
+                            what[k], (double)found[k], names[k], (double)limit[k]));
     PetscCall(SchemeAdvise(s, advice[k]));
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Check the limits of all vesicles, each on its owner. */
-static PetscErrorCode CheckVesicles(Scheme s) {
+/* A check of one own vesicle with markers X[2n]: text says what is wrong, and stays empty where nothing is. */
+typedef PetscErrorCode VesicleCheck(Scheme s, PetscInt v, const PetscScalar X[], char text[PETVES_MAX_MESSAGE]);
+
+/* The first text that a check has on any vesicle, each on its owner; the same on all ranks. */
+static PetscErrorCode CheckVesicles(Scheme s, VesicleCheck check, char text[PETVES_MAX_MESSAGE]) {
   const Layout l = s->membrane->layout;
   const PetscScalar *X;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->state.X, &X));
-  for (PetscInt v = l->own; v < l->end && !*s->report.failure; v++)
-    PetscCall(CheckLimits(s, v, X + 2 * LayoutOffset(l, v)));
+  for (PetscInt v = l->own; v < l->end && !*text; v++) PetscCall(check(s, v, X + 2 * LayoutOffset(l, v), text));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
-  PetscCall(AgreeMessage(l->comm, s->report.failure));
+  PetscCall(AgreeMessage(l->comm, text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Warn, once a run, of the first vesicle that a check finds; warned: that it has. */
+static PetscErrorCode WarnOfVesicle(Scheme s, VesicleCheck check, PetscBool *warned) {
+  char text[PETVES_MAX_MESSAGE] = "";
+  PetscFunctionBeginUser;
+  if (*warned) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckVesicles(s, check, text));
+  *warned = *text ? PETSC_TRUE : PETSC_FALSE;
+  if (*warned) PetscCall(SchemeWarn(s, "%s", text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,30 +92,19 @@ static PetscInt Resolving(PetscInt n, PetscReal third, PetscReal tail) {
   return 2 * (PetscInt)PetscCeilReal((more * n - 1) / 2) + 1;
 }
 
-/* Warn, once a run, of the first vesicle that its markers do not resolve, and name a number of markers that may. */
-static PetscErrorCode WarnOfSpectrum(Scheme s) {
+/* That markers resolve the vesicle; else a number of markers that may. */
+static PetscErrorCode CheckSpectrum(Scheme s, PetscInt v, const PetscScalar X[], char text[]) {
   const Membrane m = s->membrane;
-  const Layout l = m->layout;
-  char text[PETVES_MAX_MESSAGE] = "";
-  const PetscScalar *X;
+  const PetscInt n = LayoutCount(m->layout, v);
+  const PetscReal tail = SpectralTail(m->spectral[v], 2. / 3, X);
   PetscFunctionBeginUser;
-  if (!s->coupling->near || s->warnings.rough) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(s->state.X, &X));
-  for (PetscInt v = l->own; v < l->end && !*text; v++) {
-    const PetscScalar *own = X + 2 * LayoutOffset(l, v);
-    const PetscReal tail = SpectralTail(m->spectral[v], 2. / 3, own);
-    if (tail < ROUGH) continue;
-    const PetscInt n = LayoutCount(l, v), more = Resolving(n, SpectralTail(m->spectral[v], 1. / 3, own), tail);
-    PetscCall(PetscSNPrintf(text, sizeof(text),
-                            "%" PetscInt_FMT " markers do not resolve vesicle %" PetscInt_FMT
-                            " after step %" PetscInt_FMT ", time %g: %.2g of its bending is in the last third of its "
-                            "modes, %g is good; try -vesicle_markers %" PetscInt_FMT,
-                            n, v + 1, s->state.step, (double)s->state.t, (double)tail, SMOOTH, more));
-  }
-  PetscCall(VecRestoreArrayRead(s->state.X, &X));
-  PetscCall(AgreeMessage(l->comm, text));
-  s->warnings.rough = *text ? PETSC_TRUE : PETSC_FALSE;
-  if (s->warnings.rough) PetscCall(SchemeWarn(s, "%s", text));
+  if (tail < ROUGH) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(text, PETVES_MAX_MESSAGE,
+                          "%" PetscInt_FMT " markers do not resolve vesicle %" PetscInt_FMT " after step %" PetscInt_FMT
+                          ", time %g: %.2g of its bending is in the last third of its "
+                          "modes, %g is good; try -vesicle_markers %" PetscInt_FMT,
+                          n, v + 1, s->state.step, (double)s->state.t, (double)tail, SMOOTH,
+                          Resolving(n, SpectralTail(m->spectral[v], 1. / 3, X), tail)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,31 +116,17 @@ static PetscReal FromWall(Grid g, int dir, PetscInt n, const PetscScalar X[]) {
   return least;
 }
 
-/* Warn, once a run, of the first vesicle near two walls that meet, where stencils are scaled; without scaled stencils
-   the box part is right in corners too. */
-static PetscErrorCode WarnOfCorner(Scheme s) {
-  const Layout l = s->membrane->layout;
+/* That the vesicle keeps away from two walls that meet. */
+static PetscErrorCode CheckCorner(Scheme s, PetscInt v, const PetscScalar X[], char text[]) {
   const Grid g = s->fluid->grid;
-  char text[PETVES_MAX_MESSAGE] = "";
-  const PetscScalar *X;
+  const PetscInt n = LayoutCount(s->membrane->layout, v);
   PetscFunctionBeginUser;
-  if (!s->coupling->near || g->free || !g->wall[0] || !g->wall[1] || !s->coupling->markers->scaled ||
-      s->warnings.corner)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(s->state.X, &X));
-  for (PetscInt v = l->own; v < l->end && !*text; v++) {
-    const PetscScalar *own = X + 2 * LayoutOffset(l, v);
-    if (PetscMax(FromWall(g, 0, LayoutCount(l, v), own), FromWall(g, 1, LayoutCount(l, v), own)) >= CORNER) continue;
-    PetscCall(PetscSNPrintf(text, sizeof(text),
-                            "vesicle %" PetscInt_FMT " is within %d cells of two walls that meet after "
-                            "step %" PetscInt_FMT ", time %g; there its velocity is off by 1 to 20 %%: try finer "
-                            "-domain_cells",
-                            v + 1, CORNER, s->state.step, (double)s->state.t));
-  }
-  PetscCall(VecRestoreArrayRead(s->state.X, &X));
-  PetscCall(AgreeMessage(l->comm, text));
-  s->warnings.corner = *text ? PETSC_TRUE : PETSC_FALSE;
-  if (s->warnings.corner) PetscCall(SchemeWarn(s, "%s", text));
+  if (PetscMax(FromWall(g, 0, n, X), FromWall(g, 1, n, X)) >= CORNER) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(text, PETVES_MAX_MESSAGE,
+                          "vesicle %" PetscInt_FMT " is within %d cells of two walls that meet after "
+                          "step %" PetscInt_FMT ", time %g; there its velocity is off by 1 to 20 %%: try finer "
+                          "-domain_cells",
+                          v + 1, CORNER, s->state.step, (double)s->state.t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,7 +146,10 @@ static PetscErrorCode WarnOfStep(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Without scaled stencils the box part of the near field is right in corners too. */
 PetscErrorCode SchemeCheck(Scheme s) {
+  const Grid g = s->fluid->grid;
+  const PetscBool corners = s->coupling->near && !g->free && g->wall[0] && g->wall[1] && s->coupling->markers->scaled;
   char *failure = s->report.failure;
   PetscFunctionBeginUser;
   PetscCall(CheckFinite(s));
@@ -168,10 +157,10 @@ PetscErrorCode SchemeCheck(Scheme s) {
   PetscCall(MarkersCheck(s->coupling->markers, s->membrane->layout, s->state.X, failure));
   if (*failure)
     PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
-  if (!*failure) PetscCall(CheckVesicles(s));
+  if (!*failure) PetscCall(CheckVesicles(s, CheckLimits, failure));
   if (!*failure) PetscCall(SchemeCheckContact(s));
-  if (!*failure) PetscCall(WarnOfSpectrum(s));
-  if (!*failure) PetscCall(WarnOfCorner(s));
+  if (!*failure && s->coupling->near) PetscCall(WarnOfVesicle(s, CheckSpectrum, &s->warnings.rough));
+  if (!*failure && corners) PetscCall(WarnOfVesicle(s, CheckCorner, &s->warnings.corner));
   if (!*failure) PetscCall(FilmsWarn(s));
   if (!*failure) PetscCall(WarnOfStep(s));
   PetscFunctionReturn(PETSC_SUCCESS);
