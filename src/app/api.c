@@ -71,7 +71,7 @@ PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject 
   PetscFunctionBeginUser;
   if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(s->scheme));
   *object = FindObject(s, name);
-  if (!*object && s->scheme->ops.ksp) PetscCall(s->scheme->ops.ksp(s->scheme, name, (KSP *)object));
+  if (!*object) PetscCall(SchemeGetKSP(s->scheme, name, (KSP *)object));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,7 +2,6 @@
    sections 4.1 (no bending) and 4.2. First order in time. */
 #include "baselines/baselines.h"
 #include "baselines/lagrangian.h"
-#include "krylov/kspoptions.h"
 #include "scheme/stepcommon.h"
 
 typedef struct {
@@ -131,16 +130,10 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->U));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TensionSolverCreate(s->coupling, &d->tension));
-  if (CouplingBending(s->coupling) > 0) PetscCall(BendingSolverCreate(s->coupling, &d->bending));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode View_Split(Scheme s, PetscViewer viewer) {
-  Split *d = (Split *)s->data;
-  LagrangianSolver solvers[2] = {d->tension, d->bending};
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++)
-    if (solvers[k]) PetscCall(KSPView(solvers[k]->ksp, viewer));
+  SchemeAddSolver(s, d->tension->ksp, d->tension->chat);
+  if (CouplingBending(s->coupling) <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BendingSolverCreate(s->coupling, &d->bending));
+  SchemeAddSolver(s, d->bending->ksp, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -155,28 +148,8 @@ static PetscErrorCode Destroy_Split(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Options_Split(Scheme s, FILE *file) {
-  Split *d = (Split *)s->data;
-  LagrangianSolver solvers[2] = {d->tension, d->bending};
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++)
-    if (solvers[k]) PetscCall(KSPWriteOptions(solvers[k]->ksp, solvers[k]->chat, solvers[k]->prefix, file));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode KSP_Split(Scheme s, const char prefix[], KSP *ksp) {
-  Split *d = (Split *)s->data;
-  LagrangianSolver solvers[2] = {d->tension, d->bending};
-  PetscFunctionBeginUser;
-  *ksp = NULL;
-  for (int k = 0; k < 2; k++)
-    if (solvers[k] && !strcmp(prefix, solvers[k]->prefix)) *ksp = solvers[k]->ksp;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SchemeCreate_Split(Scheme s) {
-  const SchemeOps ops = {
-      .step = Step_Split, .view = View_Split, .options = Options_Split, .ksp = KSP_Split, .destroy = Destroy_Split};
+  const SchemeOps ops = {.step = Step_Split, .destroy = Destroy_Split};
   Split *d;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));

@@ -83,7 +83,7 @@ static PetscErrorCode ResolvedPrint(FILE *f, const void *what) {
   PetscFunctionBeginUser;
   fprintf(f, "# every option in force: mpirun -n RANKS petves -options_file resolved.opts repeats the run\n");
   PetscCall(SceneWriteOptions(scheme->scene, f));
-  if (scheme->ops.options) PetscCall(scheme->ops.options(scheme, f));
+  PetscCall(SchemeWriteOptions(scheme, f));
   PetscCall(ResolvedPrintOthers(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,6 @@
 /* The scheme "coupled": the unsplit step, unconditionally stable, solved by preconditioned FGMRES on its forces. Here:
    which steps are taken. */
 #include "scheme/coupled.h"
-#include "krylov/kspoptions.h"
 #include "scheme/films.h"
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
@@ -273,6 +272,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   State *q = &s->state;
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
+  SchemeAddSolver(s, d->solver->ksp, NULL);
   PetscCall(SetUpConvection(s, d));
   PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));
@@ -287,27 +287,6 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->made_at));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
   PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode View_Coupled(Scheme s, PetscViewer viewer) {
-  Coupled *d = (Coupled *)s->data;
-  PetscFunctionBeginUser;
-  PetscCall(KSPView(d->solver->ksp, viewer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Options_Coupled(Scheme s, FILE *file) {
-  Coupled *d = (Coupled *)s->data;
-  PetscFunctionBeginUser;
-  PetscCall(KSPWriteOptions(d->solver->ksp, NULL, "coupled_", file));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode KSP_Coupled(Scheme s, const char prefix[], KSP *ksp) {
-  Coupled *d = (Coupled *)s->data;
-  PetscFunctionBeginUser;
-  *ksp = strcmp(prefix, "coupled_") ? NULL : d->solver->ksp;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -331,12 +310,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->ops = (SchemeOps){.step = Step_Coupled,
-                       .undo = Undo_Coupled,
-                       .view = View_Coupled,
-                       .options = Options_Coupled,
-                       .ksp = KSP_Coupled,
-                       .destroy = Destroy_Coupled};
+  s->ops = (SchemeOps){.step = Step_Coupled, .undo = Undo_Coupled, .destroy = Destroy_Coupled};
   PetscCall(SetUp_Coupled(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -152,6 +152,53 @@ PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
 PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   if (s->ops.view) PetscCall(s->ops.view(s, viewer));
+  for (PetscInt k = 0; k < s->solvers; k++) PetscCall(KSPView(s->solver[k].ksp, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A solver's settings in force as options that bring them back, one a line. */
+static PetscErrorCode WriteSolverOptions(const SchemeSolver *solver, FILE *file) {
+  const KSP ksp = solver->ksp;
+  PC pc = solver->inner;
+  const char *prefix;
+  KSPType type;
+  PCType pc_type;
+  PetscReal rtol, atol, dtol;
+  PetscInt max_it;
+  PetscBool ilu, shell;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
+  PetscCall(KSPGetType(ksp, &type));
+  PetscCall(KSPGetTolerances(ksp, &rtol, &atol, &dtol, &max_it));
+  if (!pc) PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCGetType(pc, &pc_type));
+  fprintf(file, "-%sksp_type %s\n-%sksp_rtol %.17g\n-%sksp_atol %.17g\n-%sksp_max_it %" PetscInt_FMT "\n", prefix, type,
+          prefix, (double)rtol, prefix, (double)atol, prefix, max_it);
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &shell));
+  if (!shell) fprintf(file, "-%spc_type %s\n", prefix, pc_type);
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &ilu));
+  if (ilu) {
+    PetscInt levels;
+    PetscCall(PCFactorGetLevels(pc, &levels));
+    fprintf(file, "-%spc_factor_levels %" PetscInt_FMT "\n", prefix, levels);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeWriteOptions(Scheme s, FILE *file) {
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->solvers; k++) PetscCall(WriteSolverOptions(&s->solver[k], file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchemeGetKSP(Scheme s, const char wanted[], KSP *ksp) {
+  const char *prefix;
+  PetscFunctionBeginUser;
+  *ksp = NULL;
+  for (PetscInt k = 0; k < s->solvers; k++) {
+    PetscCall(KSPGetOptionsPrefix(s->solver[k].ksp, &prefix));
+    if (!strcmp(wanted, prefix)) *ksp = s->solver[k].ksp;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -22,7 +22,11 @@ PETSC_EXTERN PetscInt SchemeMemorySize(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeRemember(Scheme scheme, PetscReal memory[]);
 PETSC_EXTERN PetscErrorCode SchemeRecall(Scheme scheme, const PetscReal memory[]);
 
+/* SchemeView, SchemeWriteOptions - the Krylov solvers of a scheme: to a viewer, and their settings in force as options.
+   SchemeGetKSP - the solver of this prefix, borrowed; NULL without. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeView(Scheme scheme, PetscViewer viewer);
+PETSC_EXTERN PetscErrorCode SchemeWriteOptions(Scheme scheme, FILE *file);
+PETSC_EXTERN PetscErrorCode SchemeGetKSP(Scheme scheme, const char prefix[], KSP *ksp);
 
 /* SchemeKineticEnergy - E_K = 1/2 SUM u^2 h^2 of the total velocity minus the background. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeKineticEnergy(Scheme scheme, PetscReal *energy);

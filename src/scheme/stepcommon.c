@@ -6,6 +6,10 @@ void SchemeImplement(Scheme s, const SchemeOps *ops, void *data) {
   s->data = data;
 }
 
+void SchemeAddSolver(Scheme s, KSP ksp, PC inner) {
+  s->solver[s->solvers++] = (SchemeSolver){ksp, inner};
+}
+
 void SchemeIterations(Scheme s, PetscInt tension, PetscInt bending) {
   s->report.tension_its = tension;
   s->report.bending_its = bending;

@@ -53,6 +53,13 @@ typedef struct {
 
 typedef struct _p_Scheme *Scheme;
 
+/* A Krylov solver of a scheme, borrowed. inner: the preconditioner where the KSP's own is a shell around it, else NULL.
+ */
+typedef struct {
+  KSP ksp;
+  PC inner;
+} SchemeSolver;
+
 /* What a scheme does. All operations are collective; an operation may be NULL where its comment says so. */
 typedef struct {
   /* advance the state by state.dt, which step-size control chooses up to `most`; or fill in report.failure and leave it
@@ -61,9 +68,7 @@ typedef struct {
   /* put back the velocities and pressures of state and old that a step with a past has changed; NULL: they are copied
      before each step */
   PetscErrorCode (*undo)(Scheme);
-  PetscErrorCode (*view)(Scheme, PetscViewer);
-  PetscErrorCode (*options)(Scheme, FILE *);                 /* write the solvers' settings in force as options */
-  PetscErrorCode (*ksp)(Scheme, const char prefix[], KSP *); /* borrowed; NULL when there is none of this prefix */
+  PetscErrorCode (*view)(Scheme, PetscViewer); /* what SchemeView shows besides Krylov solvers; NULL: nothing */
   PetscErrorCode (*destroy)(Scheme);
 } SchemeOps;
 
@@ -88,6 +93,8 @@ struct _p_Scheme {
   PetscScalar *work_all; /* [2(M + W)] likewise, of all curves */
   void *data;            /* the scheme's own */
   SchemeOps ops;
+  PetscInt solvers;
+  SchemeSolver solver[2];
 };
 
 /* The times of a scheme's states and its plan for the next step, for a run that goes on from a checkpoint. */
@@ -100,9 +107,11 @@ typedef struct {
 /* SchemeSetTimes - take these times and this plan; a scheme of one state takes no old ones. Not collective. */
 PETSC_EXTERN void SchemeSetTimes(Scheme scheme, const SchemeTimes *times);
 
-/* SchemeImplement - give a scheme its operations and its own data. SchemeIterations - report the iterations of the
-   solves for tension and bending. Not collective. */
+/* SchemeImplement - give a scheme its operations and its own data. SchemeAddSolver - one more Krylov solver, at most 2,
+   that SchemeView, SchemeWriteOptions and SchemeGetKSP know by its options prefix. SchemeIterations - report the
+   iterations of the solves for tension and bending. Not collective. */
 PETSC_EXTERN void SchemeImplement(Scheme scheme, const SchemeOps *ops, void *data);
+PETSC_EXTERN void SchemeAddSolver(Scheme scheme, KSP ksp, PC inner);
 PETSC_EXTERN void SchemeIterations(Scheme scheme, PetscInt tension, PetscInt bending);
 
 /* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
