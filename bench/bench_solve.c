@@ -2,7 +2,7 @@
    repetition goes through all of them in turn.
      bench_solve -cells N -repeats R -hypre true|false      one JSON object a line, seconds of each repetition */
 #include "bench.h"
-#include "fluid/transforms/fastsolvers.h"
+#include "fluid/transforms/fastsolver.h"
 #include "fluid/stokes/stokes.h"
 
 #define BACK_ENDS 3
@@ -66,7 +66,6 @@ static PetscErrorCode BenchField(Grid grid, const char box[], Field field, Petsc
   PetscCall(VecSum(b, &sum));
   PetscCall(VecGetSize(b, &n));
   if (field == FIELD_P) PetscCall(VecShift(b, -sum / n));
-  PetscCall(FastSolversRegister());
   for (int k = 0; k < count; k++) {
     PetscCall(FastSolverCreate(grid, field, back_ends[k], &s[k]));
     PetscCall(FastSolverSetCoefficients(s[k], field == FIELD_P ? 0 : 1.5 / grid->h, field == FIELD_P ? -1 : 1));

@@ -108,7 +108,7 @@ static PetscErrorCode CreateLayouts(MPI_Comm comm, Scene scene, Simulation s) {
   PetscCall(PetscMalloc1(all + 1, &start));
   PetscCall(PetscArraycpy(start, vesicles->start, n + 1));
   for (PetscInt b = 1; b <= solid->vesicles; b++) start[n + b] = start[n] + solid->start[b];
-  PetscCall(LayoutCreate(comm, all, start, &s->all));
+  PetscCall(LayoutCreate(comm, all, start, NULL, &s->all));
   PetscCall(LayoutCreatePart(s->all, 0, n, &s->layout));
   PetscCall(PetscFree(start));
   PetscFunctionReturn(PETSC_SUCCESS);

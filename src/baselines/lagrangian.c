@@ -14,15 +14,12 @@ static PetscErrorCode MultTension(Mat A, Vec x, Vec y) {
   PetscCall(MatShellGetContext(A, &s));
   const Coupling c = s->coupling;
   const Grid g = c->fluid->grid;
-  GridWindow rows = c->markers->window; /* gradients are on whole rows */
-  rows.columns[0] = 0;
-  rows.columns[1] = g->n[0];
   PetscCall(ForcingClear(&s->r));
-  ForcingNote(&s->r, &rows);
+  ForcingNote(&s->r, NULL);
   PetscCall(CouplingSpreadTension(c, 1, x, s->r.values));
-  PetscCall(GridGradientTransposeRows(g, 1, s->r.values, rows.rows, s->r.source));
+  PetscCall(GridGradientTranspose(g, 1, s->r.values, s->r.source));
   PetscCall(FluidSolvePoisson(c->fluid, s->r.source, s->q2));
-  PetscCall(GridGradientRows(g, 1, s->q2, PETSC_TRUE, rows.rows, s->r.values));
+  PetscCall(GridGradient(g, 1, s->q2, PETSC_TRUE, s->r.values));
   PetscCall(MarkersInterpolate(c->markers, s->r.values, s->U));
   PetscCall(CouplingStretching(c, s->U, y));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -38,6 +38,5 @@ PETSC_EXTERN PetscErrorCode DipoleListPlace(DipoleList list, PetscInt M, const D
 /* DipoleListAddRow - add what the tensors T[DIPOLE_COUNT M] give to local row j of a field. Not collective. */
 PETSC_EXTERN void DipoleListAddRow(DipoleList list, Field field, PetscInt j, const PetscReal T[], PetscScalar row[]);
 
-/* DipoleListSpread - add what the tensors give to the own rows of w and source, as DipolesSpread does. Not collective.
- */
+/* DipoleListSpread - add what the tensors give to the own rows of the velocity w and of source. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleListSpread(DipoleList list, const PetscReal T[], Vec w, Vec source);

@@ -115,27 +115,3 @@ void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal
       shortfall[spot[q].field] -= part * moment;
   }
 }
-
-/* a += value times the spot, in this rank's rows of the spot's field. */
-static void DipoleAdd(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar a[]) {
-  const DipoleLine *y = &s->line[1];
-  for (PetscInt q = 0; q < y->n; q++) {
-    const PetscInt j = DipoleEntry(g, s, 1, q) - g->first;
-    if (j >= 0 && j < g->rows[s->field]) DipoleAddRow(g, s, value * y->weight[q], a + j * g->columns[s->field]);
-  }
-}
-
-PetscErrorCode DipolesSpread(Grid g, PetscInt M, const DipoleSpot spot[], const PetscReal T[], Vec w, Vec source) {
-  PetscScalar *a[3];
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArray(w, &a[FIELD_U]));
-  PetscCall(VecGetArray(source, &a[FIELD_P]));
-  a[FIELD_V] = a[FIELD_U] + GridLocalU(g);
-  for (PetscInt k = 0; k < DIPOLE_SPOTS * M; k++) {
-    const PetscReal *t = T + k / DIPOLE_SPOTS * DIPOLE_COUNT;
-    if (t[0] != 0 || t[1] != 0 || t[2] != 0) DipoleAdd(g, &spot[k], spot[k].value * t[spot[k].part], a[spot[k].field]);
-  }
-  PetscCall(VecRestoreArray(source, &a[FIELD_P]));
-  PetscCall(VecRestoreArray(w, &a[FIELD_U]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -67,8 +67,3 @@ static inline void DipoleAddRow(Grid g, const DipoleSpot *s, PetscReal value, Pe
    the walls, added to it (length^4/time^2). It is 0 far from walls along dir. Not collective. */
 PETSC_EXTERN void DipoleShortfall(Grid grid, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT],
                                   int dir, PetscReal shortfall[2]);
-
-/* DipolesSpread - add the spots[DIPOLE_SPOTS M] of M markers with tensors T[3M], the same on every rank, to the own
-   rows of w and source. Not collective. */
-PETSC_EXTERN PetscErrorCode DipolesSpread(Grid grid, PetscInt M, const DipoleSpot spot[], const PetscReal T[], Vec w,
-                                          Vec source);

@@ -15,9 +15,8 @@ static void LayoutShare(Layout l) {
   while (rank < l->size) l->body[++rank] = l->bodies;
 }
 
-/* Make a layout. body[ranks+1]: first body of each rank; NULL: by equal work. */
-static PetscErrorCode LayoutMake(MPI_Comm comm, PetscInt bodies, const PetscInt start[], const PetscInt body[],
-                                 Layout *out) {
+PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], const PetscInt body[],
+                            Layout *out) {
   Layout l;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&l));
@@ -47,25 +46,13 @@ static PetscErrorCode LayoutMake(MPI_Comm comm, PetscInt bodies, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout) {
-  PetscFunctionBeginUser;
-  PetscCall(LayoutMake(comm, bodies, start, NULL, layout));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout) {
-  PetscFunctionBeginUser;
-  PetscCall(LayoutMake(like->comm, like->bodies, start, like->body, layout));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout *layout) {
   PetscInt *start, *body;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(end - first + 1, &start, all->size + 1, &body));
   for (PetscInt b = first; b <= end; b++) start[b - first] = all->start[b] - all->start[first];
   for (PetscMPIInt r = 0; r <= all->size; r++) body[r] = PetscMax(first, PetscMin(all->body[r], end)) - first;
-  PetscCall(LayoutMake(all->comm, end - first, start, body, layout));
+  PetscCall(LayoutCreate(all->comm, end - first, start, body, layout));
   PetscCall(PetscFree2(start, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,12 +19,11 @@ struct _p_Layout {
   PetscMPIInt *count[2], *at[2]; /* [ranks] length and start of each rank's part, with one and two numbers a marker */
 };
 
-/* LayoutCreate - for bodies whose first markers are start[bodies+1] (copied). The work of a body is counted as the
-   square of its markers, like that of products with its dense matrices. Not collective. */
-PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], Layout *layout);
-
-/* LayoutCreateLike - the bodies of a layout, on the same ranks, with other markers, start[bodies+1]. Not collective. */
-PETSC_EXTERN PetscErrorCode LayoutCreateLike(Layout like, const PetscInt start[], Layout *layout);
+/* LayoutCreate - for bodies whose first markers are start[bodies+1]. body[ranks+1]: first body of each rank; NULL: by
+   equal work, where that of a body is the square of its markers, like that of products with its dense matrices. Both
+   arrays are copied. Not collective. */
+PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start[], const PetscInt body[],
+                                         Layout *layout);
 
 /* LayoutCreatePart - the bodies first .. end - 1 of a layout, on the same ranks, numbered from 0 on. Not collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout *layout);

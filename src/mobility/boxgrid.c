@@ -25,7 +25,7 @@ static PetscErrorCode BoxGridPlace(BoxGrid *b, const char kernel[]) {
   const PetscInt start[2] = {0, x->places * y->places};
   PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(LayoutCreate(PETSC_COMM_SELF, 1, start, &b->layout));
+  PetscCall(LayoutCreate(PETSC_COMM_SELF, 1, start, NULL, &b->layout));
   PetscCall(MarkersCreate(b->fluid->grid, b->layout, kernel, PETSC_TRUE, &b->markers));
   MarkersLeaveUnscaled(b->markers);
   PetscCall(LayoutCreateVec(b->layout, 2, &b->F));
@@ -148,13 +148,17 @@ static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
   const Grid g = b->fluid->grid;
   PetscReal unit[DIPOLE_COUNT] = {0};
   DipoleSpot spot[DIPOLE_SPOTS];
+  DipoleList list;
   PetscScalar sum;
   PetscFunctionBeginUser;
   unit[cj] = 1;
   DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
   PetscCall(VecSet(b->force, 0));
   PetscCall(VecSet(b->source, 0));
-  PetscCall(DipolesSpread(g, 1, spot, unit, b->force, b->source));
+  PetscCall(DipoleListCreate(g, &list));
+  PetscCall(DipoleListPlace(list, 1, spot));
+  PetscCall(DipoleListSpread(list, unit, b->force, b->source));
+  PetscCall(DipoleListDestroy(&list));
   PetscCall(VecSum(b->source, &sum));
   PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -22,8 +22,8 @@ static PetscErrorCode CreatePointLayout(CoarseGrid c, Layout fine, const PetscRe
   start[0] = 0;
   for (PetscInt v = 0; v < fine->bodies; v++) /* an odd number, which has no Nyquist mode */
     start[v + 1] = start[v] + 2 * (PetscInt)PetscMax(3, 0.5 * length[v] / (SPACING * h)) + 1;
-  PetscCall(LayoutCreateLike(fine, start, &c->layout));
-  if (c->fluid->grid->size < fine->size) PetscCall(LayoutCreate(PETSC_COMM_SELF, fine->bodies, start, &c->all));
+  PetscCall(LayoutCreate(fine->comm, fine->bodies, start, fine->body, &c->layout));
+  if (c->fluid->grid->size < fine->size) PetscCall(LayoutCreate(PETSC_COMM_SELF, fine->bodies, start, NULL, &c->all));
   PetscCall(PetscFree(start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,7 +28,7 @@ typedef struct {
 
 /* The flows of a scheme whose states have them. */
 static inline StreamFlows CoupledFlows(const Coupled *d) {
-  return StreamGetFlows(d->solver->reduced->stream);
+  return d->solver->reduced->stream->flows;
 }
 
 /* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.

@@ -36,7 +36,7 @@ static inline PetscErrorCode TestMembraneCreate(const char options[], TestMembra
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &m->scene));
   membrane = &m->scene->membrane;
-  PetscCall(LayoutCreate(PETSC_COMM_SELF, m->scene->shape.vesicles, m->scene->shape.start, &m->layout));
+  PetscCall(LayoutCreate(PETSC_COMM_SELF, m->scene->shape.vesicles, m->scene->shape.start, NULL, &m->layout));
   PetscCall(
       MembraneCreate(m->layout, m->scene->shape.X, membrane->each, (DerivativeType)membrane->derivative, &m->membrane));
   m->M = m->layout->M;
@@ -70,7 +70,7 @@ static inline PetscErrorCode TestWorldBuildFor(const CouplingSetting *setting, T
   PetscFunctionBeginUser;
   w->scheme = NULL;
   PetscCall(FluidCreate(&s->fluid, &w->fluid));
-  PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, &w->layout));
+  PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, NULL, &w->layout));
   PetscCall(
       MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
   PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, setting, &w->coupling));

@@ -76,13 +76,6 @@ PETSC_EXTERN PetscErrorCode GridGradient(Grid grid, PetscReal alpha, Vec p, Pets
 /* GridGradientTranspose - q = alpha G^T w, so that the divergence is D w = -G^T w (walls at rest). Collective. */
 PETSC_EXTERN PetscErrorCode GridGradientTranspose(Grid grid, PetscReal alpha, Vec w, Vec q);
 
-/* GridGradientRows, GridGradientTransposeRows - GridGradient and GridGradientTranspose on local rows window[0] ..
-   window[1] - 1; other rows keep their values. Collective. */
-PETSC_EXTERN PetscErrorCode GridGradientRows(Grid grid, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2],
-                                             Vec w);
-PETSC_EXTERN PetscErrorCode GridGradientTransposeRows(Grid grid, PetscReal alpha, Vec w, const PetscInt window[2],
-                                                      Vec q);
-
 /* A part of this rank's faces or cells: rows[0] .. rows[1] - 1 and in them columns[0] .. columns[1] - 1, as far as a
    field has them. */
 typedef struct {
@@ -106,10 +99,9 @@ PETSC_EXTERN PetscErrorCode GridHelmholtzField(Grid grid, Field field, PetscReal
 /* GridHelmholtz - y = a0 w - nu L_u w for a velocity, homogeneous walls. Collective. */
 PETSC_EXTERN PetscErrorCode GridHelmholtz(Grid grid, PetscReal a0, PetscReal nu, Vec w, Vec y);
 
-/* GridCreateG, GridCreateD, GridCreateL - MatShells: G (pressure to velocity), D = -G^T, L = -G^T G. Collective. */
+/* GridCreateG, GridCreateD - MatShells: G (pressure to velocity), D = -G^T. Collective. */
 PETSC_EXTERN PetscErrorCode GridCreateG(Grid grid, Mat *G);
 PETSC_EXTERN PetscErrorCode GridCreateD(Grid grid, Mat *D);
-PETSC_EXTERN PetscErrorCode GridCreateL(Grid grid, Mat *L);
 
 /* GridAssemble - assembled a0 I - nu (second differences) of one field; for FIELD_P with a0 = 0, nu = -1 this is L.
    Collective. */

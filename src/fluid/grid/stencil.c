@@ -2,7 +2,7 @@
 #include "base/lanes.h"
 #include "fluid/grid/grid.h"
 
-PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, const PetscInt window[2], Vec w) {
+PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
   const PetscReal c = alpha / g->h;
   const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
   const PetscScalar *pa;
@@ -13,7 +13,7 @@ PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, c
   PetscCall(VecGetArray(w, &wa));
   va = wa + GridLocalU(g);
   PetscCall(GridRows(g, FIELD_P, pa, &rows));
-  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++) {
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
     const PetscScalar *here = RowAt(&rows, j), *up = RowAt(&rows, j + 1);
     PetscScalar *u = wa + j * nu, *v = va + j * n;
     if (!add) {
@@ -30,13 +30,6 @@ PetscErrorCode GridGradientRows(Grid g, PetscReal alpha, Vec p, PetscBool add, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
-  const PetscInt all[2] = {0, g->rows[FIELD_P]};
-  PetscFunctionBeginUser;
-  PetscCall(GridGradientRows(g, alpha, p, add, all, w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* out = c G^T w in row j of the cells. */
 static void DivergenceRow(Grid g, PetscReal c, const PetscScalar w[], const Rows *rows, PetscInt j, PetscScalar out[]) {
   const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
@@ -47,7 +40,7 @@ static void DivergenceRow(Grid g, PetscReal c, const PetscScalar w[], const Rows
   out[n - 1] = c * (u[n - 2] - right + down[n - 1] - up[n - 1]);
 }
 
-PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const PetscInt window[2], Vec q) {
+PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
   const PetscScalar *wa;
   PetscScalar *qa;
   Rows rows;
@@ -55,7 +48,7 @@ PetscErrorCode GridGradientTransposeRows(Grid g, PetscReal alpha, Vec w, const P
   PetscCall(VecGetArrayRead(w, &wa));
   PetscCall(VecGetArray(q, &qa));
   PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
-  for (PetscInt j = window[0]; j < PetscMin(window[1], g->rows[FIELD_P]); j++)
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
     DivergenceRow(g, alpha / g->h, wa, &rows, j, qa + j * g->columns[FIELD_P]);
   PetscCall(VecRestoreArray(q, &qa));
   PetscCall(VecRestoreArrayRead(w, &wa));
@@ -96,13 +89,6 @@ PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest)
   if (bad) most = INFINITY; /* a NaN may get lost in MPI_MAX, on some ranks only */
   PetscCallMPI(MPI_Allreduce(&most, largest, 1, MPIU_REAL, MPI_MAX, g->comm));
   if (PetscIsInfOrNanReal(*largest)) *largest = NAN;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
-  const PetscInt all[2] = {0, g->rows[FIELD_P]};
-  PetscFunctionBeginUser;
-  PetscCall(GridGradientTransposeRows(g, alpha, w, all, q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,55 +183,28 @@ static PetscErrorCode MultTransposeG(Mat A, Vec w, Vec q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MultD(Mat A, Vec w, Vec q) {
-  Grid g;
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &g));
-  PetscCall(GridGradientTranspose(g, -1, w, q));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MultTransposeD(Mat A, Vec p, Vec w) {
-  Grid g;
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &g));
-  PetscCall(GridGradient(g, -1, p, PETSC_FALSE, w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MultL(Mat A, Vec p, Vec q) {
-  Grid g;
-  Vec w;
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &g));
-  PetscCall(DMGetGlobalVector(g->velocity, &w));
-  PetscCall(GridGradient(g, 1, p, PETSC_FALSE, w));
-  PetscCall(GridGradientTranspose(g, -1, w, q));
-  PetscCall(DMRestoreGlobalVector(g->velocity, &w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode StencilCreateShell(Grid g, PetscBool from_velocity, PetscBool to_velocity,
-                                         PetscErrorCode (*mult)(Mat, Vec, Vec),
-                                         PetscErrorCode (*transpose)(Mat, Vec, Vec), Mat *A) {
+static PetscErrorCode StencilCreateShell(Grid g, PetscBool transpose, Mat *A) {
   const PetscInt n_p = g->columns[FIELD_P] * g->rows[FIELD_P];
   const PetscInt n_w = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
+  const MatOperation mult = transpose ? MATOP_MULT_TRANSPOSE : MATOP_MULT;
+  const MatOperation other = transpose ? MATOP_MULT : MATOP_MULT_TRANSPOSE;
   PetscFunctionBeginUser;
-  PetscCall(MatCreateShell(g->comm, to_velocity ? n_w : n_p, from_velocity ? n_w : n_p, PETSC_DETERMINE,
-                           PETSC_DETERMINE, g, A));
-  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))mult));
-  PetscCall(MatShellSetOperation(*A, MATOP_MULT_TRANSPOSE, (void (*)(void))transpose));
+  PetscCall(
+      MatCreateShell(g->comm, transpose ? n_p : n_w, transpose ? n_w : n_p, PETSC_DETERMINE, PETSC_DETERMINE, g, A));
+  PetscCall(MatShellSetOperation(*A, mult, (void (*)(void))MultG));
+  PetscCall(MatShellSetOperation(*A, other, (void (*)(void))MultTransposeG));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode GridCreateG(Grid g, Mat *G) {
-  return StencilCreateShell(g, PETSC_FALSE, PETSC_TRUE, MultG, MultTransposeG, G);
+  return StencilCreateShell(g, PETSC_FALSE, G);
 }
+
 PetscErrorCode GridCreateD(Grid g, Mat *D) {
-  return StencilCreateShell(g, PETSC_TRUE, PETSC_FALSE, MultD, MultTransposeD, D);
-}
-PetscErrorCode GridCreateL(Grid g, Mat *L) {
-  return StencilCreateShell(g, PETSC_FALSE, PETSC_FALSE, MultL, MultL, L);
+  PetscFunctionBeginUser;
+  PetscCall(StencilCreateShell(g, PETSC_TRUE, D));
+  PetscCall(MatScale(*D, -1));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode GridAssemble(Grid g, Field f, PetscReal a0, PetscReal nu, Mat *A) {

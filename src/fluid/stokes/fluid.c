@@ -1,22 +1,18 @@
 #include "fluid/stokes/fluid.h"
-#include "fluid/transforms/fastsolvers.h"
 
 PetscErrorCode FluidSolveHelmholtz(Fluid f, Vec b, Vec w) {
   const PetscInt v = GridLocalU(f->grid);
   const PetscScalar *ba;
   PetscScalar *wa;
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(b, &ba));
   PetscCall(VecGetArray(w, &wa));
-  if (b == w)
-    ba = wa;
-  else
-    PetscCall(VecGetArrayRead(b, &ba));
   PetscCall(FastSolverBegin(f->solver[FIELD_U], ba));
   PetscCall(FastSolverBegin(f->solver[FIELD_V], ba + v));
   PetscCall(FastSolverEnd(f->solver[FIELD_U], wa));
   PetscCall(FastSolverEnd(f->solver[FIELD_V], wa + v));
-  if (b != w) PetscCall(VecRestoreArrayRead(b, &ba));
   PetscCall(VecRestoreArray(w, &wa));
+  PetscCall(VecRestoreArrayRead(b, &ba));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -24,14 +20,11 @@ PetscErrorCode FluidSolvePoisson(Fluid f, Vec q, Vec p) {
   const PetscScalar *qa;
   PetscScalar *pa;
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(q, &qa));
   PetscCall(VecGetArray(p, &pa));
-  if (q == p)
-    qa = pa;
-  else
-    PetscCall(VecGetArrayRead(q, &qa));
   PetscCall(FastSolverSolve(f->solver[FIELD_P], qa, pa));
-  if (q != p) PetscCall(VecRestoreArrayRead(q, &qa));
   PetscCall(VecRestoreArray(p, &pa));
+  PetscCall(VecRestoreArrayRead(q, &qa));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,12 +129,11 @@ static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
 
 static PetscErrorCode CreateSolvers(const FluidSpec *spec, Fluid f) {
   PetscFunctionBeginUser;
-  PetscCall(FastSolversRegister());
   for (int k = FIELD_U; k <= FIELD_P; k++)
     PetscCall(FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, &f->solver[k]));
   PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
-  PetscCall(FastSolverGetPC(f->solver[FIELD_P], &f->Linv));
-  PetscCall(PetscObjectReference((PetscObject)f->Linv));
+  f->Linv = f->solver[FIELD_P]->pc;
+  f->L = f->solver[FIELD_P]->A;
   PetscCall(CreateHelmholtz(f, spec->helmholtz));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,7 +151,6 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
-  PetscCall(GridCreateL(f->grid, &f->L));
   if (!f->grid->free) PetscCall(CreateSolvers(spec, f));
   PetscCall(FluidSetTimeCoefficient(f, 1 / spec->dt));
   f->total = spec->form == FORM_TOTAL ? PETSC_TRUE : PETSC_FALSE;
@@ -173,10 +164,8 @@ PetscErrorCode FluidDestroy(Fluid *fluid) {
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&f->G));
   PetscCall(MatDestroy(&f->D));
-  PetscCall(MatDestroy(&f->L));
   PetscCall(MatDestroy(&f->H));
   PetscCall(PCDestroy(&f->Hinv));
-  PetscCall(PCDestroy(&f->Linv));
   for (int k = FIELD_U; k <= FIELD_P; k++) PetscCall(FastSolverDestroy(&f->solver[k]));
   PetscCall(VecDestroy(&f->background));
   PetscCall(VecDestroy(&f->bc1));

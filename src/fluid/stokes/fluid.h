@@ -10,7 +10,8 @@ struct _p_Fluid {
   PetscReal a0;          /* coefficient of the markers' time difference: X_new = Xhat + U/a0 */
   PetscReal alpha;       /* leading coefficient in H = alpha I - nu L_u: a0 (0 in quasi-steady flow) */
   PetscBool steady;      /* quasi-steady flow, -fluid_inertia none */
-  Mat G, D, L, H;        /* gradient, divergence, pressure Laplacian, velocity Helmholtz operator (MatShells) */
+  Mat G, D;              /* gradient, divergence (MatShells) */
+  Mat H, L;              /* velocity Helmholtz operator, pressure Laplacian (MatShells); NULL in unbounded fluid */
   PC Hinv, Linv;         /* fast solves of H (two scalar solves) and of L (one), PCSHELLs; NULL in unbounded fluid */
   FastSolver solver[3];  /* behind them, one a field; NULL in unbounded fluid */
   PetscBool tridiagonal; /* all of them by fftw_tridiagonal */

@@ -59,15 +59,12 @@ PetscErrorCode StokesVelocity(Stokes s, Vec r, Vec w) {
   const StreamRows rows = {
       .ctx = &a, .forced = {0, all}, .wanted = {0, all}, .force = StokesForce, .velocity = TakeVelocity};
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(r, &a.r)); /* r may be w: all forces are asked for before the first velocity is there */
   PetscCall(VecGetArray(w, &a.w));
-  if (r == w) /* all forces are asked for before the first velocity is there */
-    a.r = a.w;
-  else
-    PetscCall(VecGetArrayRead(r, &a.r));
   PetscCall(GridRows(a.grid, FIELD_U, a.r, &a.u));
   PetscCall(StreamSolve(s->stream, &rows, NULL));
-  if (r != w) PetscCall(VecRestoreArrayRead(r, &a.r));
   PetscCall(VecRestoreArray(w, &a.w));
+  PetscCall(VecRestoreArrayRead(r, &a.r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

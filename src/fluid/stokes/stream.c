@@ -12,9 +12,7 @@
    of m rows as its own and M^m times what came in, Z as its own, the gain times Y from below and M^m times Z from
    above. */
 #include "fluid/stokes/stream.h"
-#include "fluid/stokes/sweepdown.h"
 #include "fluid/stokes/streamloops.h"
-#include "fluid/stokes/sweepup.h"
 
 PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   const Grid g = f->grid;
@@ -60,10 +58,6 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   PetscCall(RowTransformDestroy(&s->t));
   PetscCall(PetscFree(*stream));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-StreamFlows StreamGetFlows(Stream s) {
-  return s->flows;
 }
 
 static PetscErrorCode StreamSetUp(Stream s) {

@@ -21,6 +21,3 @@ PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
    measures: of this velocity with all that is added on all of the grid (its divergence less `source` in the wanted
    rows; no sum of squares where a flow is made), NULL: not wanted. Collective. */
 PETSC_EXTERN PetscErrorCode StreamSolve(Stream stream, const StreamRows *rows, StreamMeasures *measures);
-
-/* StreamGetFlows - what makes and reads flows of this stream; borrowed. Not collective. */
-PETSC_EXTERN StreamFlows StreamGetFlows(Stream stream);

@@ -85,17 +85,6 @@ static void SetMode(StreamFactors s, PetscInt k, PetscReal theta_1, PetscReal th
   Store(s, k, top, s->top);
 }
 
-/* The rows in which r1^j, the slower decay, is not negligible for one mode of a block. */
-static void StreamSetReach(StreamFactors s) {
-  for (PetscInt b = 0; b < s->width / TRIDIAGONAL_BLOCK; b++) {
-    s->reach[b] = 0;
-    for (PetscInt k = b * TRIDIAGONAL_BLOCK; k < (b + 1) * TRIDIAGONAL_BLOCK; k++) {
-      const PetscReal r = s->r[0][k], rows = r > 0 ? NEGLIGIBLE / -PetscLogReal(r) : 0;
-      s->reach[b] = PetscMax(s->reach[b], (PetscInt)PetscMin(rows + 1, (PetscReal)s->grid->n[1]));
-    }
-  }
-}
-
 void StreamFactorsSet(StreamFactors s, PetscReal alpha, PetscReal nu) {
   const PetscReal h2 = PetscSqr(s->grid->h);
   s->alpha = alpha;
@@ -105,7 +94,7 @@ void StreamFactorsSet(StreamFactors s, PetscReal alpha, PetscReal nu) {
     SetMode(s, k, theta_1, theta_2);
     s->factor[k] = s->scale[k] * s->r[0][k] * s->r[1][k] * h2 / nu;
   }
-  StreamSetReach(s);
+  TridiagonalReach(s->width, s->r[0], NEGLIGIBLE, s->grid->n[1], s->reach); /* r1 is the slower decay */
 }
 
 PetscErrorCode StreamFactorsCreate(Grid g, RowTransform t, StreamFactors *out) {

@@ -1,5 +1,5 @@
 /* The parts of a solve by stream function (stream.h) and the rows of forces and velocities that it is given: what its
-   way up (sweepup.h) and its way down (sweepdown.h) share. Each rank has the rows of its slab. */
+   way up (sweepup.c) and its way down (sweepdown.c) share. Each rank has the rows of its slab. */
 #pragma once
 #include "fluid/stokes/flux.h"
 #include "fluid/stokes/sidewalls.h"
@@ -49,6 +49,20 @@ struct _p_Stream {
   StreamFlows flows;
   PetscScalar *flow; /* the flow that the solve under way makes; NULL: none */
 };
+
+/* StreamGather - the way up: y of all own rows from the forces, with nothing coming in from below. measured: the forces
+   go to the meter too. Not collective. */
+PETSC_EXTERN void StreamGather(Stream stream, const StreamRows *rows, PetscBool measured);
+
+/* StreamBeginDown - start the way down at the uppermost row of the slab, after StreamSlabsClose. StreamNodeModes - the
+   modes of chi/h of row j of nodes, the next row downwards, and their number; they are written to `into` unless that is
+   NULL. squares: the meter gets them. Not collective. */
+PETSC_EXTERN void StreamBeginDown(Stream stream);
+PETSC_EXTERN PetscInt StreamNodeModes(Stream stream, PetscInt j, PetscBool squares, PetscReal *into, PetscReal **modes);
+
+/* StreamScatter - the whole way down, or to the last row that is wanted: rows of velocity, their flow and what is
+   measured. Not collective. */
+PETSC_EXTERN void StreamScatter(Stream stream, const StreamRows *rows, PetscBool measured);
 
 /* The mean that is added to row `at` of the whole grid. */
 static inline PetscReal StreamGiven(const StreamRows *rows, Field f, PetscInt at) {

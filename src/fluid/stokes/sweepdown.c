@@ -1,5 +1,7 @@
-#include "fluid/stokes/sweepdown.h"
+/* The way down of a solve by stream function: from y = (y1, y2) and what comes into a slab from outside to the stream
+   function chi, and from chi to rows of velocity (stream.c has the recurrences). */
 #include "fluid/stokes/streamloops.h"
+#include "fluid/stokes/streamstate.h"
 
 void StreamBeginDown(Stream s) {
   const StreamSlabs q = s->slabs;

@@ -1,5 +1,7 @@
-#include "fluid/stokes/sweepup.h"
+/* The way up of a solve by stream function: from the forces on the rows of a slab to y = (y1, y2) of the modes
+   (stream.c has the recurrences). */
 #include "fluid/stokes/streamloops.h"
+#include "fluid/stokes/streamstate.h"
 
 /* Modes of the curl of the forces at a row of nodes: of u below and above it, of v in it, and of the states before
    (past, NULL: none). */

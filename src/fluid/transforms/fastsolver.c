@@ -1,19 +1,12 @@
 #include "fluid/transforms/fastsolver.h"
 
-static PetscFunctionList back_ends;
-
-static PetscErrorCode ForgetBackEnds(void) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFunctionListDestroy(&back_ends));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver)) {
-  PetscFunctionBeginUser;
-  if (!back_ends) PetscCall(PetscRegisterFinalize(ForgetBackEnds));
-  PetscCall(PetscFunctionListAdd(&back_ends, type, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* Back ends by the names that -helmholtz_type and -poisson_type have for them. */
+static const struct {
+  const char *type;
+  PetscErrorCode (*create)(FastSolver);
+} back_ends[] = {{"fftw_tridiagonal", FastSolverCreate_Tridiagonal},
+                 {"fftw", FastSolverCreate_FFTW},
+                 {"hypre", FastSolverCreate_Hypre}};
 
 /* The solver as a PETSc preconditioner. */
 static PetscErrorCode ApplyShell(PC pc, Vec b, Vec x) {
@@ -47,19 +40,21 @@ static PetscErrorCode MultOperator(Mat A, Vec x, Vec y) {
 
 PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], FastSolver *out) {
   FastSolver s;
-  PetscErrorCode (*create)(FastSolver);
+  size_t k = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscFunctionListFind(back_ends, type, &create));
-  PetscCheck(create, grid->comm, PETSC_ERR_USER_INPUT, "fast solver %s: not registered", type);
+  while (k < PETSC_STATIC_ARRAY_LENGTH(back_ends) && strcmp(back_ends[k].type, type)) k++;
+  PetscCheck(k < PETSC_STATIC_ARRAY_LENGTH(back_ends), grid->comm, PETSC_ERR_USER_INPUT, "fast solver %s: unknown",
+             type);
   PetscCall(PetscNew(&s));
   *out = s;
   s->grid = grid;
   s->field = field;
   s->a0 = s->nu = PETSC_MAX_REAL;
-  PetscCall(create(s));
+  PetscCall(back_ends[k].create(s));
   const PetscInt n = grid->columns[field] * grid->rows[field];
   PetscCall(MatCreateShell(grid->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))MultOperator));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT_TRANSPOSE, (void (*)(void))MultOperator));
   PetscCall(PCCreate(grid->comm, &s->pc));
   PetscCall(PCSetType(s->pc, PCSHELL));
   PetscCall(PCShellSetContext(s->pc, s));
@@ -85,7 +80,7 @@ PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0, PetscReal n
   s->a0 = a0;
   s->nu = nu;
   s->singular = a0 == 0 && (s->field == FIELD_P || (!s->grid->wall[0] && !s->grid->wall[1])) ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(s->setcoefficients(s));
+  if (s->setcoefficients) PetscCall(s->setcoefficients(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,7 +96,7 @@ PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]) {
 PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
-  PetscCall(s->end ? s->end(s, x) : s->apply(s, s->b, x));
+  PetscCall(s->end(s, x));
   s->solves++;
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,11 +106,5 @@ PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar 
   PetscFunctionBeginUser;
   PetscCall(FastSolverBegin(s, b));
   PetscCall(FastSolverEnd(s, x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FastSolverGetPC(FastSolver s, PC *pc) {
-  PetscFunctionBeginUser;
-  *pc = s->pc;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

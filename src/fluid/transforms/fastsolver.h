@@ -1,5 +1,5 @@
-/* Fast scalar solves: (a0 I - nu second differences) x = b for one field of the grid. Back ends are registered by name
-   and stand behind one interface, which is a PETSc PCSHELL too.
+/* Fast scalar solves: (a0 I - nu second differences) x = b for one field of the grid. Back ends stand
+   behind one interface, which is a PETSc PCSHELL too.
 
    A back end that iterates may fail. Then the solution is set to infinity on every rank, and `failure` says why. What
    iterates on this solve, an outer Krylov method or a step, stops at once at a number that is not finite, on all ranks
@@ -26,16 +26,15 @@ struct _p_FastSolver {
   PetscInt solves;      /* solves so far */
   SolveFailure failure; /* the first one since it was last cleared */
   void *data;           /* the back end's own */
-  PetscErrorCode (*setcoefficients)(FastSolver);
-  PetscErrorCode (*apply)(FastSolver, const PetscScalar b[], PetscScalar x[]); /* local arrays; x may be b */
-  PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]);                  /* in place of apply: two halves */
-  PetscErrorCode (*end)(FastSolver, PetscScalar x[]);
-  const PetscScalar *b; /* right-hand side of the solve under way, for a back end that has apply */
+  const PetscScalar *b; /* right-hand side of the solve under way, a local array */
+  PetscErrorCode (*setcoefficients)(FastSolver);              /* NULL: nothing to set up */
+  PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]); /* send what other ranks need of b; NULL: nothing */
+  PetscErrorCode (*end)(FastSolver, PetscScalar x[]);         /* the solution, a local array that may be b */
   PetscErrorCode (*destroy)(FastSolver);
 };
 
 /* FastSolverCreate - solver of one field by the back end `type` ("fftw_tridiagonal", "fftw", "hypre").
-   Collective. Errors: a type that is not registered. */
+   Collective. Errors: an unknown type. */
 PETSC_EXTERN PetscErrorCode FastSolverCreate(Grid grid, Field field, const char type[], FastSolver *s);
 PETSC_EXTERN PetscErrorCode FastSolverDestroy(FastSolver *s);
 
@@ -61,14 +60,8 @@ static inline void FastSolverCount(FastSolver s) {
   s->solves++;
 }
 
-/* FastSolverGetPC - the PCSHELL that applies this solver to vectors of the field's DMDA. Borrowed. */
-PETSC_EXTERN PetscErrorCode FastSolverGetPC(FastSolver s, PC *pc);
-
-/* FastSolverRegister - add a back end under a name of -helmholtz_type and -poisson_type. Not collective. */
-PETSC_EXTERN PetscErrorCode FastSolverRegister(const char type[], PetscErrorCode (*create)(FastSolver));
-
-/* The back ends of petves, which FastSolversRegister adds: FFTW's transforms both ways; transforms along the rows with
-   tridiagonal solves across them; conjugate gradients with algebraic multigrid. Collective. */
+/* The back ends: FFTW's transforms both ways; transforms along the rows with tridiagonal solves across them; conjugate
+   gradients with algebraic multigrid. Collective. */
 PETSC_EXTERN PetscErrorCode FastSolverCreate_FFTW(FastSolver);
 PETSC_EXTERN PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver);
 PETSC_EXTERN PetscErrorCode FastSolverCreate_Hypre(FastSolver);

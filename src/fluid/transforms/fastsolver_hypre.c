@@ -6,7 +6,7 @@
 typedef struct {
   KSP ksp;
   Mat A;
-  Vec b, x;
+  Vec x; /* of the array that is solved in */
   MatNullSpace constants;
 } Assembled;
 
@@ -39,28 +39,23 @@ static PetscErrorCode NoteFailure(FastSolver s, KSP ksp, KSPConvergedReason why)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Apply_Hypre(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
+static PetscErrorCode End_Hypre(FastSolver s, PetscScalar x[]) {
   Assembled *d = (Assembled *)s->data;
   const PetscInt n = s->grid->columns[s->field] * s->grid->rows[s->field];
   KSPConvergedReason why;
-  PetscScalar *xa;
   PetscFunctionBeginUser;
-  PetscCall(VecPlaceArray(d->b, b));
-  PetscCall(VecCopy(d->b, d->x));
-  PetscCall(VecResetArray(d->b));
+  PetscCall(PetscArraymove(x, s->b, n));
+  PetscCall(VecPlaceArray(d->x, x));
   if (s->nu < 0) PetscCall(VecScale(d->x, -1));
   if (s->singular) PetscCall(MatNullSpaceRemove(d->constants, d->x));
   PetscCall(KSPSolve(d->ksp, d->x, d->x));
   PetscCall(KSPGetConvergedReason(d->ksp, &why)); /* from norms that the ranks share: the same everywhere */
   if (why < 0) {
     PetscCall(NoteFailure(s, d->ksp, why));
-    for (PetscInt i = 0; i < n; i++) x[i] = INFINITY;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (s->singular) PetscCall(MatNullSpaceRemove(d->constants, d->x));
-  PetscCall(VecGetArray(d->x, &xa));
-  PetscCall(PetscArraycpy(x, xa, n));
-  PetscCall(VecRestoreArray(d->x, &xa));
+    PetscCall(VecSet(d->x, INFINITY));
+  } else if (s->singular)
+    PetscCall(MatNullSpaceRemove(d->constants, d->x));
+  PetscCall(VecResetArray(d->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,7 +64,6 @@ static PetscErrorCode Destroy_Hypre(FastSolver s) {
   PetscFunctionBeginUser;
   PetscCall(KSPDestroy(&d->ksp));
   PetscCall(MatDestroy(&d->A));
-  PetscCall(VecDestroy(&d->b));
   PetscCall(VecDestroy(&d->x));
   PetscCall(MatNullSpaceDestroy(&d->constants));
   PetscCall(PetscFree(d));
@@ -85,10 +79,9 @@ PetscErrorCode FastSolverCreate_Hypre(FastSolver s) {
   PetscCall(PetscNew(&d));
   s->data = d;
   s->setcoefficients = SetCoefficients_Hypre;
-  s->apply = Apply_Hypre;
+  s->end = End_Hypre;
   s->destroy = Destroy_Hypre;
-  PetscCall(VecCreateMPIWithArray(g->comm, 1, n, PETSC_DETERMINE, NULL, &d->b));
-  PetscCall(VecCreateMPI(g->comm, n, PETSC_DETERMINE, &d->x));
+  PetscCall(VecCreateMPIWithArray(g->comm, 1, n, PETSC_DETERMINE, NULL, &d->x));
   PetscCall(MatNullSpaceCreate(g->comm, PETSC_TRUE, 0, NULL, &d->constants));
   PetscCall(KSPCreate(g->comm, &d->ksp));
   PetscCall(KSPSetOptionsPrefix(d->ksp, s->field == FIELD_P ? "poisson_" : "helmholtz_"));

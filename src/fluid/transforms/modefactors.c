@@ -57,14 +57,12 @@ static void ClearMode(Tridiagonal d, PetscInt k) {
   for (int last = 0; last < 2; last++) f->power[last][k] = f->gain[last][k] = 0;
 }
 
-/* The rows of a block of modes in which r^j is not negligible for one of them. */
-static void ModesSetReach(Tridiagonal d) {
-  for (PetscInt b = 0; b < d->width / TRIDIAGONAL_BLOCK; b++) {
-    const PetscInt first = b * TRIDIAGONAL_BLOCK, end = PetscMin(first + TRIDIAGONAL_BLOCK, d->modes);
-    d->reach[b] = 1;
-    for (PetscInt k = first; k < end; k++) {
-      const PetscReal r = d->factors.r[k], rows = r > 0 ? NEGLIGIBLE / PetscMax(-PetscLogReal(r), 1e-9) : 0;
-      d->reach[b] = PetscMax(d->reach[b], (PetscInt)PetscMin(rows + 1, (PetscReal)d->grid->rows[d->field]));
+void TridiagonalReach(PetscInt width, const PetscReal r[], PetscReal negligible, PetscInt most, PetscInt reach[]) {
+  for (PetscInt b = 0; b < width / TRIDIAGONAL_BLOCK; b++) {
+    reach[b] = 1;
+    for (PetscInt k = b * TRIDIAGONAL_BLOCK; k < (b + 1) * TRIDIAGONAL_BLOCK; k++) {
+      const PetscReal rows = r[k] > 0 ? negligible / PetscMax(-PetscLogReal(r[k]), 1e-9) : 0;
+      reach[b] = PetscMax(reach[b], (PetscInt)PetscMin(rows + 1, (PetscReal)most));
     }
   }
 }
@@ -85,6 +83,6 @@ PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal
       SetSeam(d, k, theta);
   }
   if (singular) ClearMode(d, 0);
-  ModesSetReach(d);
+  TridiagonalReach(d->width, d->factors.r, NEGLIGIBLE, d->grid->rows[d->field], d->reach);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -56,29 +56,19 @@ void SineMatrixApply(const SineMatrix *m, int way, const PetscReal x[], PetscRea
   const PetscReal *A = m->matrix[way];
   PetscInt at = 0;
   for (; stride - at > 8 * LANES; at += 6 * LANES) Columns(6, n, stride, n - at, A + at, x, y + at);
+#define REST(vectors)                                                                                                  \
+  case vectors:                                                                                                        \
+    Columns(vectors, n, stride, n - at, A + at, x, y + at);                                                            \
+    break;
   switch ((stride - at) / LANES) {
-  case 1:
-    Columns(1, n, stride, n - at, A + at, x, y + at);
-    break;
-  case 2:
-    Columns(2, n, stride, n - at, A + at, x, y + at);
-    break;
-  case 3:
-    Columns(3, n, stride, n - at, A + at, x, y + at);
-    break;
-  case 4:
-    Columns(4, n, stride, n - at, A + at, x, y + at);
-    break;
-  case 5:
-    Columns(5, n, stride, n - at, A + at, x, y + at);
-    break;
-  case 6:
-    Columns(6, n, stride, n - at, A + at, x, y + at);
-    break;
-  case 7:
-    Columns(7, n, stride, n - at, A + at, x, y + at);
-    break;
-  default:
-    Columns(8, n, stride, n - at, A + at, x, y + at);
+    REST(1)
+    REST(2)
+    REST(3)
+    REST(4)
+    REST(5)
+    REST(6)
+    REST(7)
+    REST(8)
   }
+#undef REST
 }

@@ -74,6 +74,11 @@ PETSC_EXTERN PetscErrorCode TridiagonalDestroy(Tridiagonal *d);
    mean of its solution is set to zero. Not collective. Errors: signs that differ. */
 PETSC_EXTERN PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal nu, PetscBool singular);
 
+/* TridiagonalReach - reach[width/TRIDIAGONAL_BLOCK]: rows, at least one, at most `most`, in which r^j is greater than
+   e^-negligible for one of a block's modes with decays r[width]. Not collective. */
+PETSC_EXTERN void TridiagonalReach(PetscInt width, const PetscReal r[], PetscReal negligible, PetscInt most,
+                                   PetscInt reach[]);
+
 /* TridiagonalReserve - make the rows of y, once, before the first Up: a solver that is never used has none. */
 PETSC_EXTERN PetscErrorCode TridiagonalReserve(Tridiagonal d);
 

@@ -1,7 +1,7 @@
 /* Fast solves: the stencil applied to the solution gives the right-hand side back, for every boundary pair, field and
    grid shape; FFTW and hypre agree. */
 #include "facts.h"
-#include "fluid/transforms/fastsolvers.h"
+#include "fluid/transforms/fastsolver.h"
 
 typedef struct {
   const char *box, *cells;
@@ -85,7 +85,6 @@ static PetscErrorCode CheckGrid(const Size *size, const char bc[], PetscBool hyp
                           size->cells, bc));
   PetscCall(TestScene(options, &scene));
   PetscCall(GridCreate(&scene->fluid, &grid));
-  PetscCall(FastSolversRegister());
   for (int f = 0; f < 3; f++) {
     FastSolver fftw, tridiagonal, other;
     PetscCall(FastSolverCreate(grid, (Field)f, "fftw", &fftw));

@@ -207,7 +207,7 @@ static PetscErrorCode CheckSame(const Box *b, const char what[], PetscReal toler
    from it; b->u is the velocity of a random force. */
 static PetscErrorCode CheckFlow(Box *b, PetscInt seed, Vec flow) {
   const Grid g = b->fluid->grid;
-  const StreamFlows flows = StreamGetFlows(StokesStream(b->stokes));
+  const StreamFlows flows = StokesStream(b->stokes)->flows;
   const StreamRows rows = {.forced = {0, g->rows[FIELD_U]}, .wanted = {0, g->rows[FIELD_U]}, .flow = flow};
   PetscReal norm, square;
   StreamMeasures measures;
@@ -234,7 +234,7 @@ static PetscErrorCode CheckFlow(Box *b, PetscInt seed, Vec flow) {
 
 /* Three random flows, and uhat = SUM weight_j u_j. */
 static PetscErrorCode MakePast(Box *b, StreamPast *past, Vec uhat) {
-  const StreamFlows flows = StreamGetFlows(StokesStream(b->stokes));
+  const StreamFlows flows = StokesStream(b->stokes)->flows;
   PetscFunctionBeginUser;
   *past = (StreamPast){.count = 3, .weight = {2, -.7, .3}, .part = .4, .lag = .15};
   for (PetscInt k = 0; k < past->count; k++) {
@@ -258,7 +258,7 @@ static PetscErrorCode CheckAdded(Box *b, StreamRows rows) {
   rows.add = PETSC_TRUE;
   PetscCall(SolveRows(b->fluid, b->stokes, rows, more, b->u, NULL));
   PetscCall(SolveExactly(b));
-  PetscCall(StreamFlowsVelocity(StreamGetFlows(StokesStream(b->stokes)), rows.flow, b->u));
+  PetscCall(StreamFlowsVelocity(StokesStream(b->stokes)->flows, rows.flow, b->u));
   PetscCall(CheckSame(b, "velocity with what is added", TOLERANCE, b->u, b->exact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -267,7 +267,7 @@ static PetscErrorCode CheckAdded(Box *b, StreamRows rows) {
    is added to such a flow is added to the velocity. */
 static PetscErrorCode CheckPast(Box *b, PetscInt first, PetscInt end) {
   const Grid g = b->fluid->grid;
-  const StreamFlows flows = StreamGetFlows(StokesStream(b->stokes));
+  const StreamFlows flows = StokesStream(b->stokes)->flows;
   const PetscInt rows = g->rows[FIELD_U], low = PetscMin(PetscMax(first - g->first, 0), rows),
                  high = PetscMax(low, PetscMin(end - g->first, rows));
   StreamPast past;

@@ -35,7 +35,7 @@ static PetscErrorCode Duplicate(CoupledSolver s, const CoupledProblem *q, Forcin
   if (q->solid) PetscCall(VecDuplicate(q->solid, &own->solid));
   PetscCall(VecCopy(q->k, own->k));
   for (PetscInt j = 0; q->past && j < q->past->count; j++) {
-    PetscCall(StreamFlowsVelocity(StreamGetFlows(s->reduced->stream), q->past->flow[j], own->w));
+    PetscCall(StreamFlowsVelocity(s->reduced->stream->flows, q->past->flow[j], own->w));
     PetscCall(VecScale(own->w, q->past->weight[j]));
     PetscCall(ForcingAdd(f, own->w));
   }
@@ -51,7 +51,7 @@ static PetscErrorCode Fields(CoupledSolver s, const CoupledProblem *q, Vec w, Ve
     PetscCall(VecCopy(q->w, w));
     PetscCall(VecCopy(q->p, p));
   } else if (q->past) {
-    PetscCall(StreamFlowsVelocity(StreamGetFlows(s->reduced->stream), q->past->made, w));
+    PetscCall(StreamFlowsVelocity(s->reduced->stream->flows, q->past->made, w));
     PetscCall(ReducedPressure(s->reduced, q->f, w, p));
   } else
     PetscCall(ReducedFields(s->reduced, q->f, w, p));

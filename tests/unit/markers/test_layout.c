@@ -152,7 +152,7 @@ static PetscErrorCode CheckCase(const char name[], PetscInt bodies, Size size) {
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
   PetscCall(PetscSNPrintf(c.name, sizeof(c.name), "%" PetscInt_FMT " %s bodies on %d ranks", bodies, name, ranks));
   for (PetscInt b = 0; b < bodies; b++) c.start[b + 1] = c.start[b] + size(b, bodies);
-  PetscCall(LayoutCreate(PETSC_COMM_WORLD, bodies, c.start, &c.l));
+  PetscCall(LayoutCreate(PETSC_COMM_WORLD, bodies, c.start, NULL, &c.l));
   CHECK(c.l->bodies == bodies && c.l->M == c.start[bodies] && c.l->size == ranks, "%s: all of them", c.name);
   PetscCall(CheckRanges(&c));
   PetscCall(CheckShares(&c));
