@@ -54,16 +54,6 @@ static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateOperator(CoupledSolver s) {
-  PetscInt n, N;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetLocalSize(s->x, &n));
-  PetscCall(VecGetSize(s->x, &N));
-  PetscCall(MatCreateShell(s->coupling->fluid->grid->comm, n, n, N, N, s, &s->A));
-  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The KSP, then the preconditioner for it. */
 static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
   PetscBool flexible;
@@ -94,6 +84,7 @@ static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
 
 PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver *out) {
   CoupledSolver s;
+  PetscInt n, N;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
@@ -106,7 +97,10 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(VecDuplicate(s->x, &s->pending));
   PetscCall(VecDuplicate(s->x, &s->trial.x));
   PetscCall(VecDuplicate(s->x, &s->trial.b));
-  PetscCall(CreateOperator(s));
+  PetscCall(VecGetLocalSize(s->x, &n));
+  PetscCall(VecGetSize(s->x, &N));
+  PetscCall(MatCreateShell(coupling->fluid->grid->comm, n, n, N, N, s, &s->A));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
   PetscCall(CreateKSP(s, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -127,16 +121,6 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
   PetscCall(ReducedDestroy(&s->reduced));
   PetscCall(UnknownsDestroy(&s->unknowns));
   PetscCall(PetscFree(*solver));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* x = (V, sigma) of the guess. */
-static PetscErrorCode Guess(CoupledSolver s, const CoupledProblem *q) {
-  PetscFunctionBeginUser;
-  if (s->guess)
-    PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, s->x));
-  else
-    PetscCall(VecSet(s->x, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -236,11 +220,13 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first residual; where products leave no velocity behind, u of its forces is measured, and a trial is wanted. */
+/* The first residual, that of the guess; where products leave no velocity behind, u of its forces is measured, and a
+ * trial is wanted. */
 static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q) {
   Trial *t = &s->trial;
   PetscFunctionBeginUser;
-  PetscCall(Guess(s, q));
+  PetscCall(VecSet(s->x, 0));
+  if (s->guess) PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, s->x));
   PetscCall(ReducedBegin(s->reduced, q, s->x, s->b));
   if (q->past)
     s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * s->reduced->measures.past);

@@ -269,22 +269,16 @@ static PetscErrorCode CreateStates_Coupled(Scheme s) {
 
 static PetscErrorCode SetUp_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  State *q = &s->state;
+  Vec *markers[] = {&d->Xstar, &d->Xhat, &d->V, &d->Y, &d->P, &d->made_at, &d->moved};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
   SchemeAddSolver(s, d->solver->ksp, NULL);
   PetscCall(SetUpConvection(s, d));
   PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));
-  PetscCall(VecDuplicate(q->X, &d->Xstar));
-  PetscCall(VecDuplicate(q->X, &d->Xhat));
-  PetscCall(VecDuplicate(q->X, &d->V));
+  for (int i = 0; i < (s->coupling->contrast ? 7 : 6); i++) PetscCall(VecDuplicate(s->state.X, markers[i]));
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
-  PetscCall(VecDuplicate(q->X, &d->Y));
-  if (s->coupling->contrast) PetscCall(VecDuplicate(q->X, &d->moved));
-  PetscCall(VecDuplicate(q->X, &d->P));
-  PetscCall(VecDuplicate(q->X, &d->made_at));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
   PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
   PetscFunctionReturn(PETSC_SUCCESS);
