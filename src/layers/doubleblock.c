@@ -117,7 +117,7 @@ typedef struct {
 } Fill;
 
 /* Whether no pair is farther apart than faces are shared, nor has another image for the nearest one. */
-static PetscBool AreNear(Fill *f) {
+static PetscBool DoubleFillIsNear(Fill *f) {
   const LayerSetting *set = f->pairs->single->set;
   const Grid g = set->markers->grid;
   const NearBounds *row = &f->pairs->single->bounds[f->block->row];
@@ -134,7 +134,7 @@ static PetscBool AreNear(Fill *f) {
 
 /* Faces, which way takes less, as a marker's double sums cost as much as some vectors of them; and all arrays, one
    behind the other: those of the walls first. */
-static PetscErrorCode CreateFill(const DoublePairs *s, const DoubleBlock *b, PetscBool lattice, Fill *f) {
+static PetscErrorCode DoubleFillCreate(const DoublePairs *s, const DoubleBlock *b, PetscBool lattice, Fill *f) {
   enum { VECTORS_PER_MARKER = 6 };
   const Layout l = s->single->set->markers->layout;
   const PetscInt n = LayoutCount(l, b->row), room = n + LANES;
@@ -148,14 +148,14 @@ static PetscErrorCode CreateFill(const DoublePairs *s, const DoubleBlock *b, Pet
                                 &c->d[0],    &c->d[1],    &f->flux[0], &f->flux[1], &f->part};
   for (int k = 0; k < 15; k++) *arrays[k] = f->memory + k * room;
   if (s->image) DoubleImageRange(s->image, c);
-  if (!lattice || !AreNear(f)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!lattice || !DoubleFillIsNear(f)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DipoleFacesCreate(n, s->single->stencil + 2 * c->i, &f->faces));
   f->by_faces = f->faces.vectors <= VECTORS_PER_MARKER * n ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Where the column's marker is from those of the row; nothing of walls. */
-static void Begin(Fill *f, PetscInt j) {
+static void DoubleFillBegin(Fill *f, PetscInt j) {
   const LayerSetting *set = f->pairs->single->set;
   DoubleColumn *c = &f->to;
   const PetscReal *X = set->markers->X;
@@ -173,7 +173,7 @@ static void Begin(Fill *f, PetscInt j) {
 }
 
 /* The lattice without walls: all pairs as if they were distant, if any are, then those by stencils. */
-static void Lattice(Fill *f) {
+static void DoubleFillLattice(Fill *f) {
   const DoublePairs *s = f->pairs;
   const DoubleColumn *c = &f->to;
   const PetscReal *X = s->single->set->markers->X, h = s->single->set->markers->grid->h;
@@ -205,7 +205,7 @@ static void Lattice(Fill *f) {
 
 /* The column's numbers of C = D - L (or D) to value, columns of J_x and of J_y, and L n added to the flux. D of a
    marker with itself, own[3] in a body's block with itself, is not among the others. */
-static void End(Fill *f, const PetscReal own[3], PetscReal value[]) {
+static void DoubleFillEnd(Fill *f, const PetscReal own[3], PetscReal value[]) {
   const DoubleColumn *c = &f->to;
   const PetscReal *N = c->N, n[2] = {c->over * N[0], c->over * N[1]};
   for (PetscInt p = 0; p < c->n; p += LANES) {
@@ -273,16 +273,16 @@ PetscErrorCode DoubleBlockFill(const DoublePairs *s, const DoubleBlock *b, Petsc
   PetscInt walls;
   Fill f;
   PetscFunctionBeginUser;
-  PetscCall(CreateFill(s, b, lattice, &f));
+  PetscCall(DoubleFillCreate(s, b, lattice, &f));
   if (f.self) {
     PetscCall(PetscMalloc1(3 * m, &own));
     PetscCall(Diagonals(set->bodies->spectral[b->row], m, set->markers->X + 2 * first, s->normal + 2 * first, own));
   }
   for (PetscInt q = 0; q < m; q++) {
-    Begin(&f, first + q);
-    if (lattice) Lattice(&f);
+    DoubleFillBegin(&f, first + q);
+    if (lattice) DoubleFillLattice(&f);
     if (s->image) DoubleImageAddColumn(s->image, reach, &f.to);
-    End(&f, own ? own + 3 * q : NULL, value + 2 * q * 2 * n);
+    DoubleFillEnd(&f, own ? own + 3 * q : NULL, value + 2 * q * 2 * n);
   }
   for (PetscInt j = 0; j < 2 * m && lattice; j++) { /* + (L n) (n w)^T/length: L acts on what Q leaves */
     const PetscReal N = s->normal[2 * first + j] / s->length[b->column];

@@ -27,7 +27,7 @@ PetscErrorCode DoubleImageDestroy(DoubleImage *image) {
 }
 
 /* Rows of a dipole y cells from a wall; parts seen from it. */
-static DipoleEnd MakeEnd(PetscReal y) {
+static DipoleEnd DoubleImageEnd(PetscReal y) {
   static const KernelWeights weights[DIPOLE_COUNT] = {KernelSpline4, KernelSpline6, KernelSpline5};
   DipoleEnd e;
   for (int part = 0; part < DIPOLE_COUNT; part++) {
@@ -44,7 +44,7 @@ void DoubleImagePlace(DoubleImage m, const PaddedStencil dipole[]) {
   for (int wall = 0; wall < 4; wall++)
     for (PetscInt k = 0; k < m->single->markers->layout->M && m->end[wall / 2][wall % 2]; k++) {
       const PetscReal y = m->single->y[wall / 2][wall % 2][k];
-      if (y < IMAGE_CELLS) m->end[wall / 2][wall % 2][k] = MakeEnd(y);
+      if (y < IMAGE_CELLS) m->end[wall / 2][wall % 2][k] = DoubleImageEnd(y);
     }
 }
 
@@ -53,7 +53,8 @@ static const ImagePlaces dipole_places = {
     2 * DIPOLE_COUNT, {{4, 3, 5, 1, 0, 2}, {0, 1, 2, 3, 4, 5}}, {[2] = PETSC_TRUE, [3] = PETSC_TRUE, [4] = PETSC_TRUE}};
 
 /* The half-space lattice's answer at i to the parts of j near a wall, x cells apart along it and seen from it. */
-static void Half(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal K[2][DIPOLE_COUNT]) {
+static void DoubleImageHalf(DoubleImage m, int wall, PetscInt i, PetscInt j, PetscReal x,
+                            PetscReal K[2][DIPOLE_COUNT]) {
   const int direction = wall / 2, t = 1 - direction;
   const ImageEnd *e = &m->single->end[direction][wall % 2][i];
   const DipoleEnd *f = &m->end[direction][wall % 2][j];
@@ -82,7 +83,7 @@ static AtWall AtWallOf(DoubleImage m, int wall, PetscInt i, PetscInt j, const Pe
   ImageTurn(&dipole_places, wall, over, (const PetscReal *)part, (PetscReal *)a.exact);
   if (!lattice) return a;
   if (NearImageIsNear(&p)) {
-    Half(m, wall, i, j, p.x, part);
+    DoubleImageHalf(m, wall, i, j, p.x, part);
     ImageTurn(&dipole_places, wall, over, (const PetscReal *)part, (PetscReal *)a.lattice);
     return a;
   }
@@ -113,7 +114,7 @@ void DoubleImageAdd(DoubleImage m, PetscInt i, PetscInt j, const PetscReal d[2],
 }
 
 /* One wall's parts, pair by pair. */
-static void AddPairs(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
+static void DoubleImageAddPairs(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
   const PetscReal *y = m->single->y[wall / 2][wall % 2];
   for (PetscInt k = 0; k < c->n; k++) {
     PetscReal exact[4], L[4];
@@ -158,7 +159,7 @@ void DoubleImageFourExact(DoubleImage m, int wall, const PetscReal N[2], const L
 
 /* One wall's parts in closed form, of markers that are off the wall, seen from which x is along it; none of images
    beyond the reach. */
-static void AddFar(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
+static void DoubleImageAddFar(DoubleImage m, int wall, PetscReal reach, const DoubleColumn *c) {
   const int direction = wall / 2;
   const PetscReal cell = 1 / m->single->markers->grid->h, *y = m->single->y[direction][wall % 2];
   const Lanes b = y[c->j] + (Lanes){0};
@@ -186,9 +187,9 @@ void DoubleImageAddColumn(DoubleImage m, PetscReal reach, const DoubleColumn *c)
     const PetscReal *y = m->single->y[wall / 2][wall % 2], low = c->near[wall];
     if (!m->end[wall / 2][wall % 2] || low + y[c->j] >= reach) continue;
     if (!c->lattice || (low + y[c->j] >= IMAGE_OFF && PetscMin(low, y[c->j]) >= FOLD_SCALED))
-      AddFar(m, wall, reach, c);
+      DoubleImageAddFar(m, wall, reach, c);
     else
-      AddPairs(m, wall, reach, c);
+      DoubleImageAddPairs(m, wall, reach, c);
   }
 }
 

@@ -56,7 +56,7 @@ static void LatticeTransform(const PetscReal moment[2][TERMS], PetscReal c, Pets
   }
 }
 
-static void Fill(const PetscReal moment[2][TERMS], NearFar *far) {
+static void NearFarFill(const PetscReal moment[2][TERMS], NearFar *far) {
   for (int angle = 0; angle < ANGLES; angle++) {
     const PetscReal phi = 2 * PETSC_PI * angle / ANGLES;
     Series L[3];
@@ -77,7 +77,7 @@ void NearFarMake(const Kernel *kernel, NearFar far[2]) {
   KernelMoments(kernel->along, TERMS, moment[0]);
   KernelMoments(kernel->across, TERMS, moment[1]);
   far[NEAR_ONE] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = 12};
-  Fill(moment, &far[NEAR_ONE]);
+  NearFarFill(moment, &far[NEAR_ONE]);
   far[NEAR_TWO] = far[NEAR_ONE];
   far[NEAR_TWO].reach = 10;
 }

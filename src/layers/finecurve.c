@@ -26,8 +26,8 @@ static PetscReal Distance2(const PetscReal a[2], const PetscReal b[2]) {
 }
 
 /* A body moved by shift (length), at factor times its markers. */
-static PetscErrorCode Create(const LayerSetting *set, PetscInt v, const PetscReal shift[2], PetscInt factor,
-                             FineCurve *c) {
+static PetscErrorCode FineCurveCreate(const LayerSetting *set, PetscInt v, const PetscReal shift[2], PetscInt factor,
+                                      FineCurve *c) {
   const Layout l = set->bodies->layout;
   const PetscInt n = LayoutCount(l, v), Q = n * factor;
   PetscFunctionBeginUser;
@@ -42,16 +42,16 @@ static PetscErrorCode Create(const LayerSetting *set, PetscInt v, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateBoth(const LayerSetting *set, const FinePair *p, PetscInt factor, FineCurve *a,
-                                 FineCurve *b) {
+static PetscErrorCode FineCurvesCreate(const LayerSetting *set, const FinePair *p, PetscInt factor, FineCurve *a,
+                                       FineCurve *b) {
   const PetscReal none[2] = {0, 0};
   PetscFunctionBeginUser;
-  PetscCall(Create(set, p->row, none, factor, a));
-  PetscCall(Create(set, p->column, p->shift, factor, b));
+  PetscCall(FineCurveCreate(set, p->row, none, factor, a));
+  PetscCall(FineCurveCreate(set, p->column, p->shift, factor, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(FineCurve *c) {
+static PetscErrorCode FineCurveDestroy(FineCurve *c) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(c->weight, c->x, c->used));
   PetscCall(PetscFree(c->P));
@@ -71,7 +71,7 @@ static PetscReal DistanceBelow(const PetscReal x[2], const FineCurve *c, PetscRe
 }
 
 /* P/f of the points in use. */
-static PetscErrorCode Weigh(FineCurve *a) {
+static PetscErrorCode FineCurveWeigh(FineCurve *a) {
   const PetscInt Q = a->n * a->f;
   PetscReal *weight;
   PetscFunctionBeginUser;
@@ -92,22 +92,22 @@ static PetscErrorCode Weigh(FineCurve *a) {
 }
 
 /* The points of a with a point of b in the window, and their rows of P. */
-static PetscErrorCode Use(FineCurve *a, const FineCurve *b, PetscReal window) {
+static PetscErrorCode FineCurveUse(FineCurve *a, const FineCurve *b, PetscReal window) {
   const PetscInt Q = a->n * a->f;
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < Q; p++)
     if (DistanceBelow(a->x + 2 * p, b, window) < window) a->used[a->count++] = p;
-  PetscCall(Weigh(a));
+  PetscCall(FineCurveWeigh(a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The larger marker spacing of two bodies. */
-static PetscReal Spacing(const LayerSetting *set, PetscInt v, PetscInt w) {
+static PetscReal FinePairSpacing(const LayerSetting *set, PetscInt v, PetscInt w) {
   return PetscMax(set->bodies->ds[v], set->bodies->ds[w]);
 }
 
 FinePair FinePairMake(const LayerSetting *set, PetscInt row, PetscInt column, const PetscReal shift[2], PetscReal gap) {
-  const PetscReal ds = Spacing(set, row, column), times = FINE * ds / PetscMax(gap, FINE * ds / MOST_FINE);
+  const PetscReal ds = FinePairSpacing(set, row, column), times = FINE * ds / PetscMax(gap, FINE * ds / MOST_FINE);
   return (FinePair){.row = row,
                     .column = column,
                     .shift = {shift[0], shift[1]},
@@ -119,15 +119,15 @@ FinePair FinePairMake(const LayerSetting *set, PetscInt row, PetscInt column, co
 PetscErrorCode FinePairGap(const LayerSetting *set, PetscInt row, PetscInt column, const PetscReal shift[2],
                            PetscReal *gap, PetscBool *close) {
   const FinePair p = {.row = row, .column = column, .shift = {shift[0], shift[1]}};
-  const PetscReal ds = Spacing(set, row, column);
+  const PetscReal ds = FinePairSpacing(set, row, column);
   FineCurve a, b;
   PetscFunctionBeginUser;
   if (*gap <= (CLOSE + 1) * ds) { /* where markers are farther, so are the curves */
-    PetscCall(CreateBoth(set, &p, PROBE, &a, &b));
+    PetscCall(FineCurvesCreate(set, &p, PROBE, &a, &b));
     *gap = PETSC_MAX_REAL;
     for (PetscInt q = 0; q < a.n * a.f; q++) *gap = DistanceBelow(a.x + 2 * q, &b, *gap);
-    PetscCall(Destroy(&a));
-    PetscCall(Destroy(&b));
+    PetscCall(FineCurveDestroy(&a));
+    PetscCall(FineCurveDestroy(&b));
   }
   *close = *gap <= CLOSE * ds ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -141,15 +141,15 @@ void FinePairsAtWalls(const LayerSetting *set, const NearBounds bounds[], PetscI
   if (g->free || kind[row].type != CURVE_CLOSED || kind[column].type != CURVE_CLOSED) return;
   for (int wall = 0; wall < 4; wall++) {
     const PetscReal gap = NearImageGap(g, wall / 2, wall % 2, &bounds[row], &bounds[column]);
-    if (!g->wall[wall / 2] || gap > CLOSE_AT_WALLS * Spacing(set, row, column)) continue;
+    if (!g->wall[wall / 2] || gap > CLOSE_AT_WALLS * FinePairSpacing(set, row, column)) continue;
     pair[*count] = FinePairMake(set, row, column, shift, gap);
     pair[(*count)++].wall = wall;
   }
 }
 
 /* chi K of the points in use, times a sign, K[parts][count_b][count_a]. */
-static void Fill(PetscReal sign, const FinePair *pair, const FineKernel *k, const FineCurve *a, const FineCurve *b,
-                 PetscReal K[]) {
+static void FinePairFill(PetscReal sign, const FinePair *pair, const FineKernel *k, const FineCurve *a,
+                         const FineCurve *b, PetscReal K[]) {
   const PetscInt Q = b->n * b->f;
   for (PetscInt q = 0; q < b->count; q++) {
     const PetscReal *y = b->x + 2 * b->used[q];
@@ -178,21 +178,21 @@ PetscErrorCode FinePairParts(const LayerSetting *set, const FinePair *pair, cons
   FineCurve a, b;
   PetscFunctionBeginUser;
   for (int fine = 1; fine >= 0; fine--) {
-    PetscCall(CreateBoth(set, pair, fine ? pair->factor : 1, &a, &b));
+    PetscCall(FineCurvesCreate(set, pair, fine ? pair->factor : 1, &a, &b));
     for (PetscInt q = 0; q < b.n * b.f && pair->wall >= 0; q++)
       b.x[2 * q + d] = 2 * (pair->wall % 2 ? g->hi[d] : g->lo[d]) - b.x[2 * q + d];
-    PetscCall(Use(&a, &b, pair->window));
-    PetscCall(Use(&b, &a, pair->window));
+    PetscCall(FineCurveUse(&a, &b, pair->window));
+    PetscCall(FineCurveUse(&b, &a, pair->window));
     PetscCall(PetscMalloc2(kernel->parts * a.count * b.count, &K, a.n * b.count, &half));
-    Fill(fine ? 1 : -1, pair, kernel, &a, &b, K);
+    FinePairFill(fine ? 1 : -1, pair, kernel, &a, &b, K);
     for (int c = 0; c < kernel->parts; c++) { /* P_a^T K P_b */
       const DenseView left = {half, a.n, b.count, a.n}, right = {b.P, b.count, b.n, b.count};
       PetscCall(DenseProduct(PETSC_TRUE, a.n, b.count, a.count, a.P, K + c * a.count * b.count, half));
       PetscCall(DenseProductWithin(PETSC_FALSE, left, right, fine ? 0 : 1, part + c * a.n * b.n, a.n));
     }
     PetscCall(PetscFree2(K, half));
-    PetscCall(Destroy(&a));
-    PetscCall(Destroy(&b));
+    PetscCall(FineCurveDestroy(&a));
+    PetscCall(FineCurveDestroy(&b));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

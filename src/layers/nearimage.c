@@ -24,15 +24,15 @@ static void Blake(const ImagePair *p, PetscReal image[IMAGE_PARTS]) {
 }
 
 /* What a marker has of a wall: tangential or normal (r = 1) component. */
-static ImageRows RowsOf(NearImage m, int wall, PetscInt i, int r) {
+static ImageRows NearImageRowsOf(NearImage m, int wall, PetscInt i, int r) {
   const ImageEnd *e = &m->end[wall / 2][wall % 2][i];
   return (ImageRows){e->first[r], e->n[r], e->weight[r], &m->stencil[2 * i + (r ? wall / 2 : 1 - wall / 2)]};
 }
 
 /* The half-space lattice's mobility of markers i and j near a wall, x cells apart along it. */
-static void Half(NearImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal part[IMAGE_PARTS]) {
-  const ImageRows a[2] = {RowsOf(m, wall, i, 0), RowsOf(m, wall, i, 1)};
-  const ImageRows b[2] = {RowsOf(m, wall, j, 0), RowsOf(m, wall, j, 1)};
+static void NearImageHalf(NearImage m, int wall, PetscInt i, PetscInt j, PetscReal x, PetscReal part[IMAGE_PARTS]) {
+  const ImageRows a[2] = {NearImageRowsOf(m, wall, i, 0), NearImageRowsOf(m, wall, i, 1)};
+  const ImageRows b[2] = {NearImageRowsOf(m, wall, j, 0), NearImageRowsOf(m, wall, j, 1)};
   const Grid g = m->markers->grid;
   const int t = 1 - wall / 2;
   part[IMAGE_TT] = ImageSum(m->table->value[OFFSET_UU], g, t, x, &a[0], &b[0]);
@@ -43,8 +43,8 @@ static void Half(NearImage m, int wall, PetscInt i, PetscInt j, PetscReal x, Pet
 
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility S + Blake -
    C_free - C_image only: the rest comes on top. */
-static void AddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
-                    PetscReal C[4]) {
+static void NearImageAddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[4],
+                             PetscReal C[4]) {
   const int direction = wall / 2, side = wall % 2;
   const ImageEnd *e = &m->end[direction][side][i], *f = &m->end[direction][side][j];
   const ImagePair p = {d[1 - direction] / m->markers->grid->h, e->y, f->y};
@@ -58,7 +58,7 @@ static void AddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscRe
     Blake(&p, blake);
   }
   if (near) {
-    Half(m, wall, i, j, p.x, part);
+    NearImageHalf(m, wall, i, j, p.x, part);
     for (int q = 0; q < IMAGE_PARTS; q++) part[q] = blake[q] + free[q] - part[q];
   } else
     ImageFar(&p, &m->kernel, e->moment, f->moment, part);
@@ -72,7 +72,8 @@ static void AddWall(NearImage m, int wall, PetscInt i, PetscInt j, const PetscRe
 void NearImageAdd(NearImage m, const PetscBool without[2][2], PetscInt i, PetscInt j, const PetscReal d[2],
                   const PetscReal L[4], PetscReal C[4]) {
   for (int wall = 0; wall < 4; wall++)
-    if (m->end[wall / 2][wall % 2] && !(without && without[wall / 2][wall % 2])) AddWall(m, wall, i, j, d, L, C);
+    if (m->end[wall / 2][wall % 2] && !(without && without[wall / 2][wall % 2]))
+      NearImageAddWall(m, wall, i, j, d, L, C);
 }
 
 void NearImageAddBlake(NearImage m, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal alpha, PetscReal C[4]) {
@@ -148,7 +149,7 @@ static PetscReal OddMoment(PetscReal y, PetscInt first, PetscInt n, const PetscR
 }
 
 /* Where a marker, y cells away, sees a wall; without weights where it is far. */
-static void MakeEnd(Markers m, PetscReal y, PetscReal across, ImageEnd *end) {
+static void NearImageEnd(Markers m, PetscReal y, PetscReal across, ImageEnd *end) {
   if (y >= IMAGE_CELLS) {
     end->y = y;
     end->scale = m->scaled ? WallScale(m->kernel, y) : 1;
@@ -178,7 +179,7 @@ PetscErrorCode NearImagePlace(NearImage m, const PaddedStencil stencil[]) {
       for (PetscInt k = 0; k < M; k++) {
         const PetscReal y = NearImageOff(g, direction, side, m->markers->X + 2 * k);
         m->y[direction][side][k] = y;
-        MakeEnd(m->markers, y, m->kernel.moment[1].second, &m->end[direction][side][k]);
+        NearImageEnd(m->markers, y, m->kernel.moment[1].second, &m->end[direction][side][k]);
       }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
