@@ -67,7 +67,8 @@ int CellsAround(PetscBool periodic, PetscInt cells, PetscInt cell, PetscInt arou
 }
 
 /* d = vector from a to the nearest image of b. */
-static void NearestImage(const PetscReal period[2], const PetscReal a[2], const PetscReal b[2], PetscReal d[2]) {
+static void CrossingNearestImage(const PetscReal period[2], const PetscReal a[2], const PetscReal b[2],
+                                 PetscReal d[2]) {
   for (int dir = 0; dir < 2; dir++) {
     d[dir] = b[dir] - a[dir];
     if (period[dir] > 0) d[dir] -= period[dir] * PetscFloorReal(d[dir] / period[dir] + 0.5);
@@ -92,7 +93,7 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[
       for (PetscInt at = c.first[cell]; at < c.first[cell + 1] && !done; at++) {
         PetscReal d[2];
         if (c.point[at] <= i) continue;
-        NearestImage(period, X + 2 * i, c.x + 2 * at, d);
+        CrossingNearestImage(period, X + 2 * i, c.x + 2 * at, d);
         if (d[0] * d[0] + d[1] * d[1] < reach * reach) done = found(context, i, c.point[at], d);
       }
     }

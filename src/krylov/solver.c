@@ -46,7 +46,7 @@ static PetscErrorCode Try(CoupledSolver s, Vec z, Vec Az) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
+static PetscErrorCode CoupledSolverMult(Mat A, Vec x, Vec y) {
   CoupledSolver s;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
@@ -100,7 +100,7 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(VecGetLocalSize(s->x, &n));
   PetscCall(VecGetSize(s->x, &N));
   PetscCall(MatCreateShell(coupling->fluid->grid->comm, n, n, N, N, s, &s->A));
-  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))CoupledSolverMult));
   PetscCall(CreateKSP(s, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -71,7 +71,7 @@ static inline Lanes ErrorFunction(Lanes x) {
 
 /* Along one period, distances d become the nearest images' and part is multiplied by erfc/2, which falls from 1 about
    BOX_FADED of a period. */
-static inline void NearestImage(Lanes period, Lanes *d, Lanes *part) {
+static inline void BoxNearestImage(Lanes period, Lanes *d, Lanes *part) {
   const PetscReal whole = 6755399441055744.; /* 3 2^51: beside it the last bit is 1 */
   const Lanes one = 1 + (Lanes){0}, x = *d / period, from = x - ((x + whole) - whole);
   const Lanes off = from - LanesWhere((LanesBits)(from >= 0.5 - TIE), one);
@@ -86,7 +86,7 @@ void BoxImageRow(const BoxAxis axis[2], PetscInt n, PetscReal *const d[2], Petsc
     for (int dir = 0; dir < 2; dir++) {
       Lanes x = LanesAt(d[dir] + k);
       if (axis[dir].wall) continue;
-      NearestImage(axis[dir].high - axis[dir].low + (Lanes){0}, &x, &all);
+      BoxNearestImage(axis[dir].high - axis[dir].low + (Lanes){0}, &x, &all);
       LanesPut(x, d[dir] + k);
     }
     LanesPut(all, part + k);

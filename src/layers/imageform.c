@@ -63,7 +63,7 @@ static Polynomial Get(const ImageForm *f, int order) {
   return p;
 }
 
-static void Put(const Polynomial *p, int order, PetscReal c[IMAGE_MONOMIALS]) {
+static void ImageFormPut(const Polynomial *p, int order, PetscReal c[IMAGE_MONOMIALS]) {
   for (int k = 0; k < image_monomials[order]; k++) c[k] = p->c[degree_a[k]][image_degree[k] - degree_a[k]];
 }
 
@@ -73,7 +73,7 @@ void ImageFormSmooth(ImageMoments along, ImageMoments response, ImageMoments sou
   Smooth(-1, along, p);
   Smooth(0, response, p);
   Smooth(1, source, p);
-  for (int m = 0; m < IMAGE_ORDERS; m++) Put(&p[m], m, f->c[m]);
+  for (int m = 0; m < IMAGE_ORDERS; m++) ImageFormPut(&p[m], m, f->c[m]);
 }
 
 ImageForm ImageFormBend(const ImageForm *f, int end) {
@@ -81,7 +81,7 @@ ImageForm ImageFormBend(const ImageForm *f, int end) {
   Polynomial half = {{{0}}};
   ImageForm bend = {{{0}}};
   Add(0.5, &twice, &half);
-  Put(&half, 1, bend.c[1]);
+  ImageFormPut(&half, 1, bend.c[1]);
   return bend;
 }
 

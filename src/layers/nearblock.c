@@ -65,7 +65,7 @@ typedef struct {
 } Chunk;
 
 /* Marker i from the other vesicle's frame. */
-static void Place(SinglePairs f, const Chunk *c, PetscReal own[2]) {
+static void NearBlockPlace(SinglePairs f, const Chunk *c, PetscReal own[2]) {
   for (int dir = 0; dir < 2; dir++) own[dir] = f->set->markers->X[2 * c->i + dir] - c->block->shift[dir];
 }
 
@@ -73,7 +73,7 @@ static void Distances(SinglePairs f, Chunk *c) {
   const PetscReal *X = f->set->markers->X + 2 * c->j, sign = c->back ? -1 : 1;
   PetscReal own[2];
   PetscInt k = 0;
-  Place(f, c, own);
+  NearBlockPlace(f, c, own);
   for (; k + LANES <= c->n; k += LANES) {
     Lanes x, y;
     LanesPairs(X + 2 * k, &x, &y);
@@ -114,7 +114,7 @@ static void FillFar(SinglePairs f, Chunk *c) {
 static PetscBool IsAlone(SinglePairs f, const Chunk *c) {
   const NearBounds *bounds = &f->bounds[c->block->column];
   PetscReal own[2], r2 = 0;
-  Place(f, c, own);
+  NearBlockPlace(f, c, own);
   for (int dir = 0; dir < 2; dir++)
     r2 += PetscSqr(PetscMax(0, PetscMax(bounds->low[dir] - own[dir], own[dir] - bounds->high[dir])));
   return !f->set->box && r2 > c->reach * c->reach ? PETSC_TRUE : PETSC_FALSE;
@@ -151,7 +151,7 @@ static void FillNear(SinglePairs f, Chunk *c) {
 }
 
 /* The images of pairs in walls that are near. */
-static void AddImages(SinglePairs f, Chunk *c) {
+static void NearBlockAddImages(SinglePairs f, Chunk *c) {
   for (PetscInt k = 0; k < c->n; k++) {
     const PetscInt from = c->back ? c->i : c->j + k, to = c->back ? c->j + k : c->i;
     const PetscReal d[2] = {c->d[0][k], c->d[1][k]}, L[4] = {c->L[0][k], c->L[1][k], c->L[2][k], c->L[3][k]};
@@ -168,7 +168,7 @@ static void FillChunk(SinglePairs f, Chunk *c) {
     if (!IsAlone(f, c)) FillNear(f, c);
   } else {
     FillNear(f, c);
-    if (f->image) AddImages(f, c);
+    if (f->image) NearBlockAddImages(f, c);
   }
   if (!f->image) return;
   PetscBool walls[2][2];
@@ -186,7 +186,7 @@ static inline void Interlace(const Chunk *c, PetscInt k, PetscReal x[], PetscRea
   LanesInterlace(part * LanesAt(c->C[yx] + k), part * LanesAt(c->C[1] + k), y);
 }
 
-static inline void Put(const NearBlock *b, size_t at, PetscReal x, NearStore *s) {
+static inline void NearBlockPut(const NearBlock *b, size_t at, PetscReal x, NearStore *s) {
   if (b->single)
     s->single[at] = (float)x;
   else
@@ -204,7 +204,7 @@ static void Write(const Chunk *c, size_t at, PetscInt stride, NearStore *s) {
     }
     Interlace(c, k, row[0], row[1]);
     for (int dir = 0; dir < 2; dir++)
-      for (PetscInt q = 0; q < n; q++) Put(c->block, at + dir * stride + q, row[dir][q], s);
+      for (PetscInt q = 0; q < n; q++) NearBlockPut(c->block, at + dir * stride + q, row[dir][q], s);
   }
 }
 
@@ -220,7 +220,7 @@ static void FillRow(SinglePairs f, const NearRow *r, Chunk *c, NearStore *s) {
     Write(c, r->at + 2 * k, r->stride, s);
   }
   for (PetscInt k = 2 * r->count; k < r->stride; k++) /* behind the last marker */
-    for (int dir = 0; dir < 2; dir++) Put(c->block, r->at + dir * r->stride + k, 0, s);
+    for (int dir = 0; dir < 2; dir++) NearBlockPut(c->block, r->at + dir * r->stride + k, 0, s);
 }
 
 /* A body's own quadrature, to its block with itself: what it has besides the plain logarithm for two markers that are k
@@ -290,7 +290,7 @@ PetscErrorCode NearBlockRefine(SinglePairs f, const NearBlock *b, const FinePair
         const PetscReal *of = part + PetscMin(place[q], kernel.parts - 1) * n;
         const PetscReal more = (NearBlockIsSelf(b) && !k ? 0.5 : 1) * of[from];
         const size_t at = r.at + q / 2 * r.stride + 2 * k + q % 2;
-        Put(b, at, (b->single ? s->single[at] : s->value[at]) + more, s);
+        NearBlockPut(b, at, (b->single ? s->single[at] : s->value[at]) + more, s);
       }
     }
   while (NearBlockNext(l, b, &r));

@@ -154,21 +154,23 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
 }
 
 /* The place of row i and column j in a matrix between two ranges. */
-static inline PetscInt Place(const MarkerRange *rows, const MarkerRange *columns, PetscInt i, PetscInt j) {
+static inline PetscInt NearFieldEntry(const MarkerRange *rows, const MarkerRange *columns, PetscInt i, PetscInt j) {
   return (j - 2 * columns->first) * 2 * rows->n + i - 2 * rows->first;
 }
 
 /* Whether a body is in a range, which is of whole bodies. */
-static inline PetscBool Within(Layout l, PetscInt body, const MarkerRange *range) {
+static inline PetscBool NearFieldHolds(Layout l, PetscInt body, const MarkerRange *range) {
   return l->start[body] >= range->first && l->start[body] < range->first + range->n ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* out += scale times a block, in its own rows. */
-static void AddBlock(Layout l, const NearBlock *b, const NearStore *s, PetscReal scale, const MarkerRange *rows,
-                     const MarkerRange *columns, PetscReal out[]) {
+static void NearFieldAddBlock(Layout l, const NearBlock *b, const NearStore *s, PetscReal scale,
+                              const MarkerRange *rows, const MarkerRange *columns, PetscReal out[]) {
   const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool there = Within(l, b->row, rows) && Within(l, b->column, columns) ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool back = both && Within(l, b->column, rows) && Within(l, b->row, columns) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool there = NearFieldHolds(l, b->row, rows) && NearFieldHolds(l, b->column, columns) ? PETSC_TRUE
+                                                                                                   : PETSC_FALSE;
+  const PetscBool back = both && NearFieldHolds(l, b->column, rows) && NearFieldHolds(l, b->row, columns) ? PETSC_TRUE
+                                                                                                          : PETSC_FALSE;
   NearRow r = NearBlockBegin(l, b);
   if (!there && !back) return;
   do
@@ -177,8 +179,8 @@ static void AddBlock(Layout l, const NearBlock *b, const NearStore *s, PetscReal
         const size_t at = r.at + (size_t)(c * r.stride + k);
         const PetscReal value = scale * (b->single ? s->single[at] : s->value[at]);
         const PetscInt i = 2 * r.row + c, j = 2 * r.column + k;
-        if (there) out[Place(rows, columns, i, j)] += value;
-        if (back) out[Place(rows, columns, j, i)] += value;
+        if (there) out[NearFieldEntry(rows, columns, i, j)] += value;
+        if (back) out[NearFieldEntry(rows, columns, j, i)] += value;
       }
   while (NearBlockNext(l, b, &r));
 }
@@ -206,17 +208,17 @@ PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, 
   NearBlock block;
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < f->list.fixed.blocks; b++)
-    AddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+    NearFieldAddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
   for (PetscInt b = FirstBlock(f, from); b < f->list.count.blocks && l->start[f->list.block[b].row] < to; b++)
-    AddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+    NearFieldAddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
   for (PetscInt k = 0; k < f->list.distant->pairs; k++) { /* whose block is made for that */
     const NearDistantPair *p = &f->list.distant->pair[k];
-    if (!(Within(l, p->row, rows) && Within(l, p->column, columns)) &&
-        !(Within(l, p->row, columns) && Within(l, p->column, rows)))
+    if (!(NearFieldHolds(l, p->row, rows) && NearFieldHolds(l, p->column, columns)) &&
+        !(NearFieldHolds(l, p->row, columns) && NearFieldHolds(l, p->column, rows)))
       continue;
     PetscCall(DistantBlock(f, k, &block, &store));
     PetscCall(NearDistantExpand(f->list.distant, k, NearStride(LayoutCount(l, p->column)), store.value));
-    AddBlock(l, &block, &store, scale, rows, columns, out);
+    NearFieldAddBlock(l, &block, &store, scale, rows, columns, out);
     PetscCall(PetscFree(store.value));
   }
   if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));

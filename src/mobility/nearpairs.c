@@ -21,7 +21,7 @@ static PetscBool Meet(const NearBounds *a, const NearBounds *b, const PetscReal 
 
 /* The block of own vesicle v and the image of w moved by shift, with room for its values. With many
    vesicles values that are far from large are in single precision. */
-static PetscErrorCode AddBlock(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
+static PetscErrorCode NearListAddBlock(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
   const Layout l = f->pairs->set->bodies->layout;
   const PetscBool many = l->bodies > MANY ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool single = many && !f->pairs->set->markers->grid->free &&
@@ -42,7 +42,7 @@ static PetscErrorCode AddBlock(NearList *f, PetscInt v, PetscInt w, const PetscR
 }
 
 /* Least distance (length) between markers of v and of w moved by shift, where it is below reach. */
-static PetscReal Apart(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal reach) {
+static PetscReal NearListGap(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal reach) {
   const Layout l = f->pairs->set->bodies->layout;
   const PetscReal *X = f->pairs->set->markers->X, none[2] = {0, 0};
   PetscReal least = f->pairs->set->markers->grid->free ? reach : reach * reach;
@@ -92,7 +92,7 @@ static PetscErrorCode Images(NearList *f, PetscInt v, PetscInt w, Image image[MO
       if (v == w && Continues(f, v, p, q)) continue;
       if (v == w && ((!p && !q) || (!f->pairs->set->box && (q < 0 || (q == 0 && p < 0))))) continue;
       if (!Meet(a, b, one.shift, reach)) continue;
-      one.gap = Apart(f, v, w, one.shift, reach);
+      one.gap = NearListGap(f, v, w, one.shift, reach);
       if (!f->pairs->set->markers->grid->free && one.gap >= reach) continue;
       PetscCall(FinePairGap(f->pairs->set, v, w, one.shift, &one.gap, &one.close));
       image[*count] = one;
@@ -126,7 +126,7 @@ static PetscBool AreDistant(NearList *f, PetscInt v, PetscInt w, PetscReal gap) 
 
 /* A block for each image of w; with a box part one, of the images nearest to each marker, named after the nearest, in
    which all close images are refined; v's own are in its block with itself. */
-static PetscErrorCode AddImages(NearList *f, PetscInt v, PetscInt w) {
+static PetscErrorCode NearListAddImages(NearList *f, PetscInt v, PetscInt w) {
   Image image[MOST_IMAGES];
   PetscBool distant = PETSC_FALSE;
   int count;
@@ -136,7 +136,7 @@ static PetscErrorCode AddImages(NearList *f, PetscInt v, PetscInt w) {
     PetscCall(NearDistantAdd(f->distant, f->pairs->set->markers->X, v, w, image[0].shift, &distant));
   if (distant) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < count; k++) {
-    if (!f->pairs->set->box || (!k && v != w)) PetscCall(AddBlock(f, v, w, image[k].shift, image[k].gap));
+    if (!f->pairs->set->box || (!k && v != w)) PetscCall(NearListAddBlock(f, v, w, image[k].shift, image[k].gap));
     if (!image[k].close) continue;
     PetscCall(ArrayReserve((size_t)f->count.closes + 1, &f->close_room, &f->close));
     f->close[f->count.closes++] = (NearClose){f->count.blocks - 1,
@@ -204,10 +204,10 @@ static PetscErrorCode AddBlocks(NearList *f, PetscBool fixed) {
   if (c.count) qsort(c.pair, (size_t)c.count, sizeof(*c.pair), ByRow);
   for (PetscInt v = l->own; v < l->end; v++) {
     if (c.resting[v] == fixed) {
-      PetscCall(AddBlock(f, v, v, none, 0));
-      PetscCall(AddImages(f, v, v));
+      PetscCall(NearListAddBlock(f, v, v, none, 0));
+      PetscCall(NearListAddImages(f, v, v));
     }
-    for (; k < c.count && c.pair[k][0] == v; k++) PetscCall(AddImages(f, v, c.pair[k][1]));
+    for (; k < c.count && c.pair[k][0] == v; k++) PetscCall(NearListAddImages(f, v, c.pair[k][1]));
   }
   PetscCall(PetscFree(c.pair));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -152,7 +152,7 @@ static PetscErrorCode ReducedRespond(Reduced s, const PetscScalar x[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Mult(Mat A, Vec x, Vec y) {
+static PetscErrorCode ReducedMult(Mat A, Vec x, Vec y) {
   Reduced s;
   const PetscScalar *xa;
   PetscScalar *ya;
@@ -286,7 +286,7 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
     if (s->stream) PetscCall(DipoleRowsCreate(c->fluid->grid, c->fluid->nu, &s->dipoles));
   }
   PetscCall(MatCreateShell(c->fluid->grid->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
-  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))Mult));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))ReducedMult));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

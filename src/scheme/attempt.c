@@ -217,7 +217,7 @@ static PetscInt Order(Scheme s, const History *h) {
 }
 
 /* Largest |x - y| on this rank, of marker vectors; y is overwritten. */
-static PetscErrorCode Apart(Scheme s, Vec x, Vec y, PetscReal *largest) {
+static PetscErrorCode LargestDifference(Scheme s, Vec x, Vec y, PetscReal *largest) {
   const PetscScalar *d;
   PetscFunctionBeginUser;
   *largest = 0;
@@ -235,7 +235,7 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
   PetscFunctionBeginUser;
   BDFGuess(count, d->history.step, star);
   PetscCall(HistorySum(count, star, 1, states, d->Y));
-  PetscCall(Apart(s, x, d->Y, largest));
+  PetscCall(LargestDifference(s, x, d->Y, largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,7 +295,7 @@ static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   if (d->order == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &off[0]));
   PetscCall(VecCopy(d->Xstar, d->Y));
-  PetscCall(Apart(s, d->next.X, d->Y, &off[1]));
+  PetscCall(LargestDifference(s, d->next.X, d->Y, &off[1]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, off, 2, MPIU_REAL, MPI_MAX, m->layout->comm));
   for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
   *overshot = off[1] > FAR * off[0] && off[1] > STILL * R0 ? PETSC_TRUE : PETSC_FALSE;
