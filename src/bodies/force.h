@@ -7,7 +7,8 @@
        K Y + k,      K symmetric.
 
    Arrays X, V and F are the own parts [2n] of marker vectors, lengths squared over time squared times a length a marker
-   (length^3/time^2). All operations add to what they give. An operation is NULL where a force has nothing of it. */
+   (length^3/time^2). Each operation adds its answer to what the array has. An operation is NULL where a force has
+   nothing of it. */
 #pragma once
 #include "bodies/bodies.h"
 #include "fluid/grid/grid.h"
@@ -46,8 +47,8 @@ struct _p_Forces {
   Force force[FORCES_MOST];
 };
 
-/* ForcesAdd - one more force. ForcesDestroy - all of them. ForcesFind - the
-   context of the force of this name; NULL without. ForcesReach - the farthest reach of all. Not collective. */
+/* ForcesAdd - one more force. ForcesDestroy - all of them. ForcesFind - the context of the force of this name; NULL
+   without. ForcesReach - the farthest reach of all. Not collective. */
 PETSC_EXTERN PetscErrorCode ForcesAdd(Forces forces, const Force *force);
 PETSC_EXTERN PetscErrorCode ForcesDestroy(Forces *forces);
 PETSC_EXTERN void *ForcesFind(Forces forces, const char name[]);

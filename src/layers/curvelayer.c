@@ -203,7 +203,7 @@ static PetscBool CurveRoot(CurveLayer c, Point z, Point *t0, Point *slope) {
                                                                                                : PETSC_FALSE;
 }
 
-/* Of the finer points. */
+/* The sums over the finer points, with what the trapezoidal rule lacks at the poles. */
 static CurveSums CurveNearSums(CurveLayer c, Point z) {
   PetscReal distance;
   const PetscInt nearest = CurveNearest(&c->fine, z, &distance);

@@ -30,5 +30,5 @@ PETSC_EXTERN void ImageKernelMake(const Kernel *kernel, ImageKernel *image);
 PETSC_EXTERN void ImageFar(const ImagePair *pair, const ImageKernel *kernel, PetscReal ma, PetscReal mb,
                            PetscReal part[IMAGE_PARTS]);
 
-/* ImageFarFour - the same of four pairs off the wall. Not collective. */
+/* ImageFarFour - C_image of four pairs off the wall, for viscosity 1. Not collective. */
 PETSC_EXTERN void ImageFarFour(const ImageKernel *kernel, Lanes x, Lanes a, Lanes b, Lanes part[IMAGE_PARTS]);

@@ -18,7 +18,7 @@
 #include "numerics/blas.h"
 #include "layers/latticegreen.h"
 
-/* Of the wave number theta. */
+/* The numbers of the mode with the wave number theta. */
 static ImageMode ImageModeMake(PetscReal theta) {
   const PetscReal half = PetscSinReal(0.5 * theta), mu = 2 * PetscAsinhReal(half);
   ImageMode m = {.k = 2 * half, .s = 4 * half * half, .sinh = PetscSinhReal(mu), .cosh = PetscCoshReal(mu)};

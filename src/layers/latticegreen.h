@@ -38,7 +38,7 @@ static inline void DipoleContract(const PetscReal K[2][DIPOLE_COUNT], const Pets
   }
 }
 
-/* DipoleContractFour - the same of four pairs. Not collective. */
+/* DipoleContractFour - DipoleContract of four pairs. Not collective. */
 static inline void DipoleContractFour(Lanes K[2][DIPOLE_COUNT], const PetscReal N[2], Lanes M[4]) {
   for (int c = 0; c < 2; c++) {
     M[c] = 2 * N[0] * K[c][DIPOLE_XX] + N[1] * K[c][DIPOLE_XY];

@@ -16,7 +16,7 @@ void NearImageBlake(Lanes x, Lanes a, Lanes b, Lanes image[IMAGE_PARTS]) {
     }
 }
 
-/* Of one pair. */
+/* NearImageBlake of one pair. */
 static void Blake(const ImagePair *p, PetscReal image[IMAGE_PARTS]) {
   Lanes four[IMAGE_PARTS];
   NearImageBlake(p->x + (Lanes){0}, p->a + (Lanes){0}, p->b + (Lanes){0}, four);

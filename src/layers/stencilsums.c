@@ -112,7 +112,7 @@ static inline PetscReal StencilSum(const StencilPoints p, TableMiddle t, const P
   return LanesSum(sum);
 }
 
-/* The same where the compiler knows the points. */
+/* A double sum of stencils whose numbers of points the compiler knows. */
 #define FIXED_SUM(rx, ry, sx, sy, ...)                                                                                 \
   StencilSum((StencilPoints){((rx) + (sx) + LANES - 2) / LANES, {rx, ry}, {sx, sy}}, __VA_ARGS__)
 

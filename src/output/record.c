@@ -152,14 +152,17 @@ static int RecordRepeated(const Record *r) {
   return r->vesicles > 1 && r->vesicles <= RECORD_FEW ? n : 0;
 }
 
-/* The column of a force's energy, of this name; OTHER_ENERGY where it comes behind all other columns, NO_ENERGY where
-   the force has none. */
-enum { NO_ENERGY = -2, OTHER_ENERGY = -1 };
-static int RecordEnergy(const Force *force, char name[RECORD_ENTRY]) {
-  (void)snprintf(name, RECORD_ENTRY, "energy_%s", force->name);
-  for (int c = 0; c < COLUMN_COUNT; c++)
-    if (!strcmp(SeriesColumns[c], name)) return c;
-  return force->energy ? OTHER_ENERGY : NO_ENERGY;
+/* Find where the energy of each force goes, by the name energy_NAME. */
+static void RecordPlaceEnergies(Record *r) {
+  char name[RECORD_ENTRY];
+  for (PetscInt k = 0; k < r->forces->n; k++) {
+    const Force *force = &r->forces->force[k];
+    int c = COLUMN_COUNT - 1;
+    (void)snprintf(name, RECORD_ENTRY, "energy_%s", force->name);
+    while (c >= 0 && strcmp(SeriesColumns[c], name)) c--;
+    r->column[k] = !force->energy ? RECORD_NOWHERE : c < 0 ? RECORD_LAST : c;
+    r->others += r->column[k] == RECORD_LAST;
+  }
 }
 
 static void RecordAddName(Record *r, size_t *used, const char name[]) {
@@ -180,7 +183,10 @@ static void RecordWriteHeader(Record *r, const SceneObstacles *obstacles) {
     RecordAddName(r, &used, name);
   }
   for (PetscInt k = 0; k < r->forces->n; k++)
-    if (RecordEnergy(&r->forces->force[k], name) == OTHER_ENERGY) RecordAddName(r, &used, name);
+    if (r->column[k] == RECORD_LAST) {
+      (void)snprintf(name, RECORD_ENTRY, "energy_%s", r->forces->force[k].name);
+      RecordAddName(r, &used, name);
+    }
 }
 
 PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, Forces forces, Record *r) {
@@ -190,15 +196,16 @@ PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, 
   r->forces = forces;
   r->solids = ObstacleRowCount(obstacles);
   r->room = (size_t)(COLUMN_COUNT + vesicles * RecordRepeated(r) + r->solids + FORCES_MOST) * RECORD_ENTRY;
-  PetscCall(PetscCalloc4(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, (PetscInt)r->room, &r->header,
-                         (PetscInt)r->room, &r->text));
+  PetscCall(PetscCalloc5(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, vesicles, &r->work, (PetscInt)r->room,
+                         &r->header, (PetscInt)r->room, &r->text));
+  RecordPlaceEnergies(r);
   RecordWriteHeader(r, obstacles);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode RecordDestroy(Record *r) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(r->each, r->solid, r->header, r->text));
+  PetscCall(PetscFree5(r->each, r->solid, r->work, r->header, r->text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,25 +236,22 @@ static PetscErrorCode RecordGaps(Record *r, Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The energies of the forces, at the vesicles that this rank owns; those without a column of vesicles as sums. */
+/* The energies of the forces: in the columns of the own vesicles, or as sums over all vesicles. */
 static PetscErrorCode RecordEnergies(Record *r, Scheme s, const PetscScalar X[]) {
   const Layout l = s->membrane->layout;
-  PetscReal *E;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(l->bodies, &E));
   for (PetscInt k = 0; k < r->forces->n; k++) {
     const Force *force = &r->forces->force[k];
-    char name[RECORD_ENTRY];
-    const int column = RecordEnergy(force, name);
+    const int column = r->column[k];
     r->energy[k] = 0;
-    if (!force->energy) continue;
-    PetscCall(PetscArrayzero(E, l->bodies));
-    PetscCall(force->energy(force->context, s->state.t, X, E));
-    for (PetscInt v = l->own; v < l->end; v++) r->energy[k] += E[v];
-    for (PetscInt v = l->own; v < l->end && column >= 0; v++) r->each[v * COLUMN_COUNT + column] = E[v];
+    if (column == RECORD_NOWHERE) continue;
+    PetscCall(PetscArrayzero(r->work, l->bodies));
+    PetscCall(force->energy(force->context, s->state.t, X, r->work));
+    for (PetscInt v = l->own; v < l->end; v++)
+      *(column < 0 ? &r->energy[k] : &r->each[v * COLUMN_COUNT + column]) += r->work[v];
   }
-  PetscCall(PetscFree(E));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->energy, (PetscMPIInt)r->forces->n, MPIU_REAL, MPI_SUM, l->comm));
+  if (r->others)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->energy, (PetscMPIInt)r->forces->n, MPIU_REAL, MPI_SUM, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -336,10 +340,8 @@ PetscErrorCode RecordTake(Record *r, Scheme s) {
       RecordAddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
   PetscCall(ObstacleRowTake(s, r->solid));
   for (PetscInt k = 0; k < r->solids; k++) RecordAddNumber(r, &used, r->solid[k]);
-  for (PetscInt k = 0; k < r->forces->n; k++) {
-    char name[RECORD_ENTRY];
-    if (RecordEnergy(&r->forces->force[k], name) == OTHER_ENERGY) RecordAddNumber(r, &used, r->energy[k]);
-  }
+  for (PetscInt k = 0; k < r->forces->n; k++)
+    if (r->column[k] == RECORD_LAST) RecordAddNumber(r, &used, r->energy[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

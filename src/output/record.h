@@ -50,14 +50,20 @@ PETSC_EXTERN const char *const SeriesColumns[COLUMN_COUNT];
 #define RECORD_FEW 40
 PETSC_EXTERN const int RecordVesicleColumns[];
 
+/* Places of a force's energy other than one of RECORD_COLUMNS: a column of its own behind all others, or none. */
+enum { RECORD_NOWHERE = -2, RECORD_LAST = -1 };
+
 typedef struct {
   PetscInt vesicles;            /* number of vesicles */
   Forces forces;                /* borrowed */
   PetscInt solids;              /* columns of obstacles */
   PetscReal last[COLUMN_COUNT]; /* the last row, over all vesicles */
   PetscReal *each;              /* [vesicles][COLUMN_COUNT] the vesicles' own columns of the last row */
-  PetscReal *solid; /* [solids] the obstacles' columns of the last row, behind the vesicles' in series.csv */
-  PetscReal energy[FORCES_MOST]; /* of each force */
+  PetscReal *solid;        /* [solids] the obstacles' columns of the last row, behind the vesicles' in series.csv */
+  int column[FORCES_MOST]; /* where the energy of each force goes: a column, RECORD_LAST or RECORD_NOWHERE */
+  PetscReal energy[FORCES_MOST]; /* of the forces whose energy comes last; else 0 */
+  PetscInt others;               /* number of these */
+  PetscReal *work;               /* [vesicles] */
   char *header, *text;           /* names of the columns, and the last row, as lines of series.csv without line ends */
   size_t room;                   /* characters that header and text have room for */
   PetscInt solves, tension, bending, coupled; /* sums over the run */

@@ -7,8 +7,8 @@
        (5)  E_w u - C F - beta N N^T F + k_w = 0                no slip on obstacles, whose F is unknown
 
    V is the markers' velocity without the background's, seen from labels that turn at the speed v of their vesicle; C is
-   the near field of all bodies; K is
-   what the elastic forces change by (bodies/force.h); k is what C gives of the known forces.
+   the near field of all bodies; K is what the forces change by with their markers (bodies/force.h); k is what C gives
+   of the known forces.
 
    A Stokes solve gives u and p for any force. So the unknowns are V, the obstacles' F and sigma, and a product with the
    operator costs one Stokes solve for the velocity at the markers alone (fluid/stokes/stream.h); u and p follow from

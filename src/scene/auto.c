@@ -36,7 +36,7 @@ static const Calibrated *CalibratedRow(Scene s) {
 #define WIDE 2       /* spacings: wider films are resolved */
 #define GROWTH 1.2   /* of the markers from one try to the next */
 
-/* A first shape's tail (SpectralTail beyond two thirds of the modes) for an error of 1e-3, and the largest: .31 left
+/* A first shape's tail (SpectralTail beyond two thirds of the modes) for an error of 1e-3, and the largest: 0.31 left
    7e-4 of R0 in a pair pressed together. */
 #define TAIL 0.15
 #define MOST_TAIL 0.3
@@ -44,7 +44,7 @@ static const Calibrated *CalibratedRow(Scene s) {
 /* Error of a film over its thickness, by the number of marker spacings in the film (docs/settings.md, Films). */
 static const struct {
   PetscReal spacings, error;
-} films[] = {{WIDE, 1e-5}, {1.5, 2e-4}, {1, 4e-3}, {.7, 1e-2}, {.5, 4e-2}, {.3, 1}};
+} films[] = {{WIDE, 1e-5}, {1.5, 2e-4}, {1, 4e-3}, {0.7, 1e-2}, {0.5, 4e-2}, {0.3, 1}};
 
 /* Rate at which the flow shortens vesicle v along its length (1/time); 0 if the flow does not, or is not known. */
 static PetscReal VesicleCompression(Scene scene, PetscInt v) {

@@ -268,7 +268,7 @@ const OptionDefault scene_defaults[] = {
   {"-coupling_box_part", HasNoNearField, "false", NULL, "it is part of the exact near field", NULL},
   {"-coupling_box_part", IsFree, "false", NULL, "there is no box", NULL},
   {"-coupling_box_part", IsLarge, "false", NULL, "in a box so large it moves vesicles by 2e-5 of their speed at most", "default %s from 256 cells across on"},
-  {"-time_adapt_max_step", IsAdaptive, NULL, LargestStep, "what this flow, or the shape at rest, bears", "not given: 1/(rate (1 + .03 chi)) in a flow, nu R0^3/c_b without one (time)"},
+  {"-time_adapt_max_step", IsAdaptive, NULL, LargestStep, "what this flow, or the shape at rest, bears", "not given: 1/(rate (1 + 0.03 chi)) in a flow, nu R0^3/c_b without one (time)"},
   {"-output_every", IsLong, NULL, OutputTime, "at most 100 frames", "not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)"},
   {NULL}};
 /* clang-format on */

@@ -33,7 +33,7 @@ static PetscReal LargestError(Membrane m, const PetscScalar X[], const PetscScal
   return largest;
 }
 
-/* The same of the step in next, on all ranks. */
+/* The error estimate of the step in next, on all ranks. */
 static PetscErrorCode Estimate(Scheme s, Coupled *d, PetscReal *error) {
   const PetscScalar *X, *Xstar;
   PetscReal found[2] = {0, 0};

@@ -18,6 +18,8 @@ RANKS = {
     "test_nearfield": (1, 3, 5),
     "test_direct": (1,),
 }
+#: Facts of those that state fewer than 20.
+FEW = {"test_doublebox": 3, "test_near_cells": 14, "test_nearfar": 11, "test_nearfield": 17}
 
 
 @pytest.mark.parametrize("name,ranks", [(name, ranks) for name in NAMES for ranks in RANKS.get(name, (1, 3))])
@@ -27,7 +29,7 @@ def test_facts_hold(name, ranks, tmp_path):
     wrong = [line for line in facts if line.startswith("not ok ")]
     assert not wrong, "\n".join(wrong)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
-    assert len(facts) >= 3, "a program that states nothing proves nothing"
+    assert len(facts) >= FEW.get(name, 20), "a program that states nothing proves nothing"
 
 
 def test_lines_of_mpirun_are_dropped():

@@ -1,5 +1,5 @@
-/* Fast scalar solves: (a0 I - nu second differences) x = b for one field of the grid. Back ends stand
-   behind one interface, which is a PETSc PCSHELL too.
+/* Fast scalar solves: (a0 I - nu second differences) x = b for one field of the grid. Back ends stand behind
+   one interface, which is a PETSc PCSHELL too.
 
    A back end that iterates may fail. Then the solution is set to infinity on every rank, and `failure` says why. What
    iterates on this solve, an outer Krylov method or a step, stops at once at a number that is not finite, on all ranks
