@@ -4,6 +4,7 @@ while it writes: a rank that is killed, a stop and a continue, a folder that is 
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -144,9 +145,13 @@ def test_stopped_and_continued(tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="root writes into what others may not")
-def test_folder_becomes_read_only(tmp_path_factory):
-    """A user's run says so at its next checkpoint, and goes on from the one before when the folder is writable again."""
+def test_folder_becomes_read_only(tmp_path_factory, monkeypatch):
+    """A user's run says so at its next checkpoint, and goes on from the one before when the folder is writable again.
+    The program is copied, as the clone may be where only root can look."""
     place = tmp_path_factory.mktemp("open")
+    for part in ("bin", "lib"):
+        shutil.copytree(Path(PETVES).parents[1] / part, place / part)
+    monkeypatch.setattr(harness, "PETVES", str(place / "bin" / "petves"))
     for path in (place, *list(place.parents)[:-2]):
         path.chmod(0o777)
     folder = place / "run"
