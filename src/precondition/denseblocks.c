@@ -117,7 +117,7 @@ static void BeginFrames(DenseBlocks b) {
   }
 }
 
-PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock solid, PetscReal a0,
+PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleBlock solid, PetscReal a0,
                                  PetscBool *factored) {
   const Membrane m = b->coupling->membrane;
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
@@ -133,7 +133,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
   for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].n);
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
   if (b->together) {
-    PetscCall(MobilityOnRoot(mobility, &all, &all, b->root, Mob));
+    PetscCall(MeanMobilityOnRoot(mobility, &all, &all, b->root, Mob));
     if (solid) PetscCall(ObstacleBlockCouple(solid, mobility, Mob, &singular));
     if (singular) good = PETSC_FALSE;
     PetscCall(AssembleMotion(b, a0, 0, m->layout->M, &motion));
@@ -142,7 +142,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, Mobility mobility, ObstacleBlock
     DenseBlock *q = &b->block[k];
     if (!b->together) {
       const MarkerRange own = {q->first, q->n};
-      PetscCall(MobilityAssemble(mobility, &own, &own, 0, 1, Mob));
+      PetscCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->near) PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_FALSE, q->first, q->n, Mob));
       PetscCall(AssembleMotion(b, a0, q->first, q->n, &motion));

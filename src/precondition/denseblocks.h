@@ -26,8 +26,8 @@ PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
    C for a0 and the coupling's label speeds. A block for all is that in the presence of the obstacles, whose own block
    is `solid`, or NULL. Ranks share the sums of Mob of a block for all, its owner does the rest. factored is false, on
    every rank, when a matrix is singular. Collective. */
-PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, Mobility mobility, ObstacleBlock solid, PetscReal a0,
-                                              PetscBool *factored);
+PETSC_EXTERN PetscErrorCode DenseBlocksFactor(DenseBlocks blocks, MeanMobility mobility, ObstacleBlock solid,
+                                              PetscReal a0, PetscBool *factored);
 
 /* DenseBlocksSolve - from the own U[2n] and sigma[n] = r_s: sigma, and U overwritten by U3. Collective. */
 PETSC_EXTERN PetscErrorCode DenseBlocksSolve(DenseBlocks blocks, PetscScalar U[], PetscScalar sigma[]);

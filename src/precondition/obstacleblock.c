@@ -105,16 +105,16 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
   const PetscInt n = 2 * l->M;
   const MarkerRange solid = {o->all->M - l->M, l->M};
   const PetscReal scale = o->beta * PetscSqr(b->coupling->fluid->grid->h);
-  Mobility mobility;
+  MeanMobility mobility;
   PetscFunctionBeginUser;
   if (IsBySolves(b)) {
     PetscCall(MobilityBySolves(b, A));
-    PetscCall(MobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
+    PetscCall(MeanMobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
   } else {
-    PetscCall(MobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
-    PetscCall(MobilitySetUp(mobility, b->coupling->fluid->alpha));
-    PetscCall(MobilityOnRoot(mobility, &solid, &solid, b->root, A));
-    PetscCall(MobilityDestroy(&mobility));
+    PetscCall(MeanMobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
+    PetscCall(MeanMobilitySetUp(mobility, b->coupling->fluid->alpha));
+    PetscCall(MeanMobilityOnRoot(mobility, &solid, &solid, b->root, A));
+    PetscCall(MeanMobilityDestroy(&mobility));
   }
   for (PetscInt v = 0; v < l->bodies && l->rank == b->root; v++)
     for (PetscInt j = 2 * l->start[v]; j < 2 * l->start[v + 1]; j++)
@@ -245,7 +245,7 @@ static PetscErrorCode EliminateObstacles(ObstacleBlock b, PetscInt m, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal Mob[], PetscBool *failed) {
+PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, MeanMobility mobility, PetscReal Mob[], PetscBool *failed) {
   const MarkerRange vesicles = {0, b->coupling->membrane->layout->M}, solid = {vesicles.n, b->obstacles->layout->M};
   const PetscInt m = 2 * vesicles.n;
   PetscReal *K;
@@ -256,7 +256,8 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, Mobility mobility, PetscReal
   if (!b->force) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
   b->coupled = b->age.made;
   PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
-  PetscCall(MobilityOnRoot(mobility, &solid, &vesicles, b->root, K)); /* velocity of obstacles by forces on vesicles */
+  PetscCall(
+      MeanMobilityOnRoot(mobility, &solid, &vesicles, b->root, K)); /* velocity of obstacles by forces on vesicles */
   if (b->obstacles->layout->rank == b->root) PetscCall(EliminateObstacles(b, m, K, Mob));
   PetscCall(PetscFree(K));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,7 +14,7 @@
    One rank, the owner of the first body, has the factor; all ranks make parts of A. */
 #pragma once
 #include "precondition/age.h"
-#include "precondition/mobility.h"
+#include "precondition/meanmobility.h"
 
 typedef struct _p_ObstacleBlock *ObstacleBlock;
 
@@ -51,7 +51,7 @@ PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const Pe
    placed: X = A^-1 K, A the obstacles' block, K their velocity by forces on the vesicles, and Mob[2M][2M], the
    vesicles' mobility times h^2 on the owner of the first one, becomes that in the presence of the obstacles, Mob - h^2
    K^T X. Nothing where obstacles move. failed: as ObstacleBlockSetUp, left alone otherwise. Collective. */
-PETSC_EXTERN PetscErrorCode ObstacleBlockCouple(ObstacleBlock block, Mobility mobility, PetscReal Mob[],
+PETSC_EXTERN PetscErrorCode ObstacleBlockCouple(ObstacleBlock block, MeanMobility mobility, PetscReal Mob[],
                                                 PetscBool *failed);
 
 /* ObstacleBlockBegin - A^-1 r of the own obstacles' residuals r[2w], kept in the block; U[2n] -= X^T r of the own

@@ -113,14 +113,14 @@ static void FindShapes(ObstacleModes s) {
 }
 
 /* D of a curve, [2n][2n], on root. */
-static PetscErrorCode AssembleCurve(ObstacleModes s, Mobility mobility, PetscInt v, PetscReal D[]) {
+static PetscErrorCode AssembleCurve(ObstacleModes s, MeanMobility mobility, PetscInt v, PetscReal D[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const Layout l = o->layout;
   const PetscInt n = 2 * LayoutCount(l, v);
   const MarkerRange own = {o->all->M - l->M + l->start[v], n / 2};
   const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h), *N = o->N + 2 * l->start[v];
   PetscFunctionBeginUser;
-  PetscCall(MobilityOnRoot(mobility, &own, &own, s->root, D));
+  PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) D[j * n + i] = D[j * n + i] / h2 + o->beta * N[i] * N[j];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,14 +149,14 @@ static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool 
 
 static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *done) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  Mobility mobility;
+  MeanMobility mobility;
   PetscReal *D;
   PetscFunctionBeginUser;
   *done = PETSC_TRUE;
   PetscCall(FreeShapes(s));
   FindShapes(s);
-  PetscCall(MobilityCreate(s->spec, s->coupling, PETSC_MAX_REAL, &mobility));
-  PetscCall(MobilitySetUp(mobility, alpha));
+  PetscCall(MeanMobilityCreate(s->spec, s->coupling, PETSC_MAX_REAL, &mobility));
+  PetscCall(MeanMobilitySetUp(mobility, alpha));
   for (PetscInt k = 0; k < s->shapes; k++) {
     CurveShape *q = &s->shape[k];
     const PetscInt n = LayoutCount(o->layout, q->like);
@@ -169,7 +169,7 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
     if (!good) *done = PETSC_FALSE;
     PetscCall(PetscFree(D));
   }
-  PetscCall(MobilityDestroy(&mobility));
+  PetscCall(MeanMobilityDestroy(&mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

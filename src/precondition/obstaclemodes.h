@@ -7,7 +7,7 @@
        A ~ D + Q M Q^T,     A^-1 = D^-1 - D^-1 Q K Q^T D^-1,     K = (I + M G)^-1 M,     G = Q^T D^-1 Q.
    The matrices are in single precision on one rank, root; all ranks make parts of D and M. */
 #pragma once
-#include "precondition/mobility.h"
+#include "precondition/meanmobility.h"
 
 #define OBSTACLE_MODES 3000 /* at most, of all curves: K is dense */
 

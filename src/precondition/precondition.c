@@ -30,7 +30,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
   } else if (CouplingHasMembrane(c)) {
-    PetscCall(MobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
+    PetscCall(MeanMobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
   }
   p->age = AgeNone();
@@ -44,7 +44,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(SharedShapesDestroy(&p->shapes));
   PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
-  PetscCall(MobilityDestroy(&p->mobility));
+  PetscCall(MeanMobilityDestroy(&p->mobility));
   PetscCall(PetscFree(p->force));
   PetscCall(PetscFree(p->treading));
   PetscCall(PetscFree(*preconditioner));
@@ -56,7 +56,7 @@ static PetscErrorCode MakeBlocks(Preconditioner p) {
   const Fluid f = c->fluid;
   PetscBool factored;
   PetscFunctionBeginUser;
-  if (p->mobility) PetscCall(MobilitySetUp(p->mobility, f->alpha));
+  if (p->mobility) PetscCall(MeanMobilitySetUp(p->mobility, f->alpha));
   PetscCall(DenseBlocksFactor(p->blocks, p->mobility, p->solid, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscArraycpy(p->treading, c->treading, c->membrane->layout->bodies));

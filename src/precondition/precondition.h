@@ -17,14 +17,14 @@ typedef struct {
 
 typedef struct _p_Preconditioner *Preconditioner;
 struct _p_Preconditioner {
-  Unknowns unknowns;    /* borrowed */
-  Mobility mobility;    /* few vesicles */
-  DenseBlocks blocks;   /* few vesicles */
-  SharedShapes shapes;  /* many vesicles */
-  ObstacleBlock solid;  /* NULL without obstacles */
-  PetscReal step_ratio; /* largest ratio of two steps that share dense blocks */
-  Age age;              /* of the dense blocks; without any, of the solves */
-  PetscReal *treading;  /* [vesicles] the label speeds for which the blocks were made */
+  Unknowns unknowns;     /* borrowed */
+  MeanMobility mobility; /* few vesicles */
+  DenseBlocks blocks;    /* few vesicles */
+  SharedShapes shapes;   /* many vesicles */
+  ObstacleBlock solid;   /* NULL without obstacles */
+  PetscReal step_ratio;  /* largest ratio of two steps that share dense blocks */
+  Age age;               /* of the dense blocks; without any, of the solves */
+  PetscReal *treading;   /* [vesicles] the label speeds for which the blocks were made */
   Application now;
   PetscBool flexible; /* blocks may be made anew under way */
   PetscBool failed;   /* a block could not be factored */

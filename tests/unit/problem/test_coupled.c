@@ -170,14 +170,14 @@ static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[
 
 /* Mob of one vesicle against E A^-1 E^T: largest difference over the largest entry; and that shares of it add up. */
 static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
-  const Mobility mobility = q->s->preconditioner->mobility;
+  const MeanMobility mobility = q->s->preconditioner->mobility;
   const PetscInt n = 2 * LayoutCount(q->t.layout, v);
   const MarkerRange own = {q->t.layout->start[v], n / 2};
   PetscReal *Mob, *part, most = 0, error, asymmetry = 0, apart = 0;
   PetscFunctionBeginUser;
-  PetscCall(MobilitySetUp(mobility, q->t.fluid->alpha));
+  PetscCall(MeanMobilitySetUp(mobility, q->t.fluid->alpha));
   PetscCall(PetscMalloc2(n * n, &Mob, n * n, &part));
-  PetscCall(MobilityAssemble(mobility, &own, &own, 0, 1, Mob));
+  PetscCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
   PetscCall(MobilityError(q, v, Mob, &error));
   for (PetscInt c = 0; c < n; c++)
     for (PetscInt r = 0; r < n; r++) {
@@ -187,7 +187,7 @@ static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
   CHECK(error < 1e-11 * most, "%s: Mob is E A^-1 E^T, %.1e", name, error / most);
   CHECK(asymmetry < 1e-11 * most, "%s: Mob is symmetric, %.1e", name, asymmetry / most);
   for (PetscInt p = 0; p < 3; p++) {
-    PetscCall(MobilityAssemble(mobility, &own, &own, p, 3, part));
+    PetscCall(MeanMobilityAssemble(mobility, &own, &own, p, 3, part));
     for (PetscInt k = 0; k < n * n; k++) Mob[k] -= part[k];
   }
   for (PetscInt k = 0; k < n * n; k++) apart = PetscMax(apart, PetscAbsReal(Mob[k]));
@@ -215,7 +215,7 @@ static PetscErrorCode CheckNearField(const char box[], PetscReal a0, PetscReal m
     const MarkerRange own = {0, n / 2};
     PetscReal *Mob, error, most = 0;
     PetscCall(PetscMalloc1(n * n, &Mob));
-    PetscCall(MobilityAssemble(q.s->preconditioner->mobility, &own, &own, 0, 1, Mob));
+    PetscCall(MeanMobilityAssemble(q.s->preconditioner->mobility, &own, &own, 0, 1, Mob));
     PetscCall(MobilityError(&q, 0, Mob, &error));
     for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(Mob[k]));
     CHECK(error < most_error * most, "%s, a0 = %g: Mob is E A^-1 E^T within %.1e", box, (double)a0, error / most);

@@ -1,4 +1,4 @@
-#include "precondition/mobility.h"
+#include "precondition/meanmobility.h"
 #include "layers/nearblock.h"
 
 #define TABLE_NEAR 14 /* cells up to which stencils are summed where the near field is exact */
@@ -10,8 +10,8 @@ static PetscBool TakesBox(Coupling c) {
   return c->fluid->steady && c->near && c->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, Mobility *out) {
-  Mobility m;
+PetscErrorCode MeanMobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, MeanMobility *out) {
+  MeanMobility m;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
   *out = m;
@@ -25,7 +25,7 @@ PetscErrorCode MobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilityDestroy(Mobility *mobility) {
+PetscErrorCode MeanMobilityDestroy(MeanMobility *mobility) {
   PetscFunctionBeginUser;
   if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*mobility)->table) PetscCall(MobilityTableDestroy(&(*mobility)->table));
@@ -35,7 +35,7 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
+PetscErrorCode MeanMobilitySetUp(MeanMobility m, PetscReal alpha) {
   PetscFunctionBeginUser;
   m->part = CouplingGridPart(m->coupling, alpha);
   if (m->table) PetscCall(MobilityTableSetUp(m->table, alpha));
@@ -43,14 +43,14 @@ PetscErrorCode MobilitySetUp(Mobility m, PetscReal alpha) {
 }
 
 /* Whether a pair's stencils are summed: near, and with all of their offsets in the table. */
-static PetscBool IsTableNear(Mobility m, const PetscReal cells[2]) {
+static PetscBool IsTableNear(MeanMobility m, const PetscReal cells[2]) {
   for (int dir = 0; dir < 2; dir++)
     if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) return PETSC_FALSE;
   return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
-static void TablePair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
+static void TablePair(MeanMobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
   const Grid g = m->coupling->fluid->grid;
   const PetscReal *X = m->coupling->markers->X;
   PetscReal d[2], cells[2];
@@ -72,7 +72,7 @@ static void TablePair(Mobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
 }
 
 /* The stencils of markers, which count from the markers' own places. */
-static void PadStencils(Mobility m, const MarkerRange *range) {
+static void PadStencils(MeanMobility m, const MarkerRange *range) {
   const Markers markers = m->coupling->markers;
   for (PetscInt k = range->first; k < range->first + range->n; k++) {
     for (PetscInt q = 2 * k; q < 2 * k + 2; q++) StencilPad(&markers->plain[q], &m->stencil[q]);
@@ -107,8 +107,8 @@ static void BoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   for (int q = 0; q < 4; q++) value[q] = h * h * fade * (L[q] - C[q]);
 }
 
-PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
-                                PetscInt parts, PetscReal Mob[]) {
+PetscErrorCode MeanMobilityAssemble(MeanMobility m, const MarkerRange *rows, const MarkerRange *columns, PetscInt part,
+                                    PetscInt parts, PetscReal Mob[]) {
   const Layout l = m->coupling->bodies->layout;
   const PetscReal h2 = PetscSqr(m->coupling->fluid->grid->h);
   PetscInt begin = 0, end = rows->n;
@@ -144,8 +144,8 @@ PetscErrorCode MobilityAssemble(Mobility m, const MarkerRange *rows, const Marke
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilityAddNear(Coupling c, PetscBool box, const MarkerRange *rows, const MarkerRange *columns,
-                               PetscMPIInt root, PetscReal Mob[]) {
+PetscErrorCode MeanMobilityAddNear(Coupling c, PetscBool box, const MarkerRange *rows, const MarkerRange *columns,
+                                   PetscMPIInt root, PetscReal Mob[]) {
   const Layout l = c->bodies->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
@@ -156,11 +156,11 @@ PetscErrorCode MobilityAddNear(Coupling c, PetscBool box, const MarkerRange *row
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MobilityOnRoot(Mobility m, const MarkerRange *rows, const MarkerRange *columns, PetscMPIInt root,
-                              PetscReal Mob[]) {
+PetscErrorCode MeanMobilityOnRoot(MeanMobility m, const MarkerRange *rows, const MarkerRange *columns, PetscMPIInt root,
+                                  PetscReal Mob[]) {
   const Layout l = m->coupling->bodies->layout;
   PetscFunctionBeginUser;
-  PetscCall(MobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
-  PetscCall(MobilityAddNear(m->coupling, m->box ? PETSC_FALSE : PETSC_TRUE, rows, columns, root, Mob));
+  PetscCall(MeanMobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
+  PetscCall(MeanMobilityAddNear(m->coupling, m->box ? PETSC_FALSE : PETSC_TRUE, rows, columns, root, Mob));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
