@@ -12,10 +12,11 @@ static PetscErrorCode Create(TestWorld *w) {
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
   const SceneCoupling *c = &w->scene->coupling;
-  const CouplingSetting setting = {.kernel = c->kernel,
-                                   .near = (NearFieldType)c->near_field,
-                                   .spec = &w->scene->fluid,
-                                   .box_part = SceneHasBoxPart(w->scene),
+  const CouplingSetting setting = {.mobility = {.kernel = c->kernel,
+                                                .near = (NearFieldType)c->near_field,
+                                                .spec = &w->scene->fluid,
+                                                .box_part = SceneHasBoxPart(w->scene),
+                                                .solver = !SceneIsProjection(w->scene)},
                                    .area_target = SceneHasAreaTarget(w->scene)};
   PetscCall(TestWorldBuildFor(&setting, w));
   PetscCall(TestWorldScheme(w));

@@ -82,18 +82,19 @@ PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char
 
 static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
   const PetscInt vesicles = scene->shape.vesicles;
-  CouplingSetting setting = {.kernel = scene->coupling.kernel,
-                             .near = (NearFieldType)scene->coupling.near_field,
-                             .spec = &scene->fluid,
-                             .box_part = SceneHasBoxPart(scene),
-                             .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
+  CouplingSetting setting = {.mobility = {.kernel = scene->coupling.kernel,
+                                          .near = (NearFieldType)scene->coupling.near_field,
+                                          .spec = &scene->fluid,
+                                          .box_part = SceneHasBoxPart(scene),
+                                          .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
+                                          .solver = !SceneIsProjection(scene)},
                              .area_target = SceneHasAreaTarget(scene),
                              .scene = scene};
   PetscReal *ratio;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(vesicles, &ratio));
-  if (SceneHasContrast(scene)) setting.ratio = ratio;
-  for (PetscInt v = 0; v < vesicles && setting.ratio; v++) ratio[v] = SceneViscosityRatio(scene, v);
+  if (SceneHasContrast(scene)) setting.mobility.ratio = ratio;
+  for (PetscInt v = 0; v < vesicles && setting.mobility.ratio; v++) ratio[v] = SceneViscosityRatio(scene, v);
   PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, &setting, &s->coupling));
   PetscCall(PetscFree(ratio));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,7 +1,7 @@
 /* The two Lagrangian solves of the split scheme, on marker and edge vectors. Any KSP or PC option works under the
    prefixes tension_ and bending_. */
 #pragma once
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 
 typedef struct _p_LagrangianSolver *LagrangianSolver;
 struct _p_LagrangianSolver {

@@ -2,7 +2,7 @@
    is zero outside a small window of cells around its edge: entry (k, l) of Chat is the product of two windows where
    they overlap. One rank has the whole matrix. */
 #pragma once
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 
 /* TensionAssemble - Chat at the coupling's markers, a sequential matrix on rank root, NULL elsewhere.
    Not collective. */

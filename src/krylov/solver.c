@@ -1,5 +1,4 @@
 #include "krylov/solver.h"
-#include "mobility/contrast.h"
 
 #define MOST_ROUNDS 4
 
@@ -39,7 +38,7 @@ static PetscErrorCode Try(CoupledSolver s, Vec z, Vec Az) {
   t->state = TRIAL_MADE;
   PetscCall(VecAXPBY(s->pending, t->scale, 0, z));
   PetscCall(VecWAXPY(t->x, 1, s->pending, s->x));
-  PetscCall(ReducedUpdate(s->reduced, s->pending, t->x, t->b));
+  PetscCall(ReducedAdd(s->reduced, s->pending, t->x, t->b));
   PetscCall(VecNorm(t->b, NORM_2, &t->residual));
   PetscCall(VecWAXPY(Az, -1, t->b, s->b));
   PetscCall(VecScale(Az, 1 / t->scale));
@@ -124,46 +123,44 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In unbounded fluid, which has no f: the norm of the right-hand sides k and g with their factors, and of the speed
-   c_b/(nu R0^2) that bending can give a marker, without which a circle, whose k is all rounding, would have no scale.
- */
-static PetscErrorCode FreeReference(CoupledSolver s, const CoupledProblem *q) {
+/* In unbounded fluid, which has no f: the norm of the residual without unknowns, and of the speed c_b/(nu R0^2) that
+   bending can give a marker, without which a circle, whose residual is all rounding, would have no scale. */
+static PetscErrorCode FreeReference(CoupledSolver s) {
   const Membrane m = s->coupling->membrane;
   const Layout l = m->layout;
+  PetscReal residual, bending;
   PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(UnknownsPack(s->unknowns, q->k, NULL, q->g, s->change));
+  PetscCall(VecSet(s->x, 0));
+  PetscCall(ReducedAdd(s->reduced, s->x, s->x, s->b));
+  PetscCall(VecNorm(s->b, NORM_2, &residual));
+  PetscCall(VecSet(s->change, 0));
   PetscCall(VecGetArray(s->change, &a));
-  PetscCall(CouplingNearField(s->coupling, -1, q->F, a));
-  if (q->moved) PetscCall(ContrastAdd(s->coupling, -1, q->moved, a));
   for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscReal speed = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
     const PetscInt at = 2 * LayoutOffset(l, v);
-    for (PetscInt k = at; k < at + 2 * LayoutCount(l, v); k++) a[k] = PetscSqrtReal(a[k] * a[k] + speed * speed);
+    for (PetscInt k = at; k < at + 2 * LayoutCount(l, v); k++)
+      a[k] = m->bending * m->part[v] / (s->coupling->fluid->nu * PetscSqr(m->L0[v] / (2 * PETSC_PI)));
   }
   UnknownsScale(s->unknowns, PETSC_FALSE, a);
   PetscCall(VecRestoreArray(s->change, &a));
-  PetscCall(VecNorm(s->change, NORM_2, &s->reference));
+  PetscCall(VecNorm(s->change, NORM_2, &bending));
+  s->reference = PetscHypotReal(residual, bending);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The square of the norm of k of the own obstacles with its factors. */
 static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q, PetscReal *sum) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const PetscInt n = s->unknowns->solid;
-  PetscScalar *all, *data;
-  const PetscScalar *a;
+  PetscScalar *a, *solid;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(s->unknowns->velocity + n, &all));
-  data = all + s->unknowns->velocity;
-  PetscCall(VecGetArrayRead(q->k, &a));
-  PetscCall(PetscArraycpy(all, a, s->unknowns->velocity + n));
-  PetscCall(VecRestoreArrayRead(q->k, &a));
-  PetscCall(CouplingNearField(s->coupling, -1, q->F, all));
-  ObstaclesScale(o, UnknownsWeight(s->unknowns), PETSC_FALSE, data);
-  for (PetscInt i = 0; i < n; i++) *sum += PetscSqr(data[i]);
-  PetscCall(PetscFree(all));
+  PetscCall(VecCopy(q->k, s->reduced->U));
+  PetscCall(VecGetArray(s->reduced->U, &a));
+  solid = a + s->unknowns->velocity;
+  PetscCall(MobilityAddLayers(s->coupling->mobility, q->known.F, NULL, a));
+  ObstaclesScale(o, UnknownsWeight(s->unknowns), PETSC_FALSE, solid);
+  for (PetscInt i = 0; i < s->unknowns->solid; i++) *sum += PetscSqr(solid[i]);
+  PetscCall(VecRestoreArray(s->reduced->U, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,6 +168,7 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q
    before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Layout l = s->coupling->membrane->layout;
+  const Forcing *f = q->known.f;
   const PetscScalar *a;
   const PetscReal l2 = PetscSqr(s->unknowns->length);
   PetscReal sum = 0, squares = 0;
@@ -181,26 +179,26 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
       sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
   PetscCall(VecRestoreArrayRead(q->g, &a));
   PetscCall(ObstacleReference(s, q, &sum));
-  PetscCall(GridAddSquares(q->f->grid, q->f->everywhere ? NULL : &q->f->window, q->f->values, &squares));
+  PetscCall(GridAddSquares(f->grid, f->everywhere ? NULL : &f->window, f->values, &squares));
   sum += l2 * squares;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
   s->reference = PetscSqrtReal(sum);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x + the change of a KSPSolve, with u and p or what is measured of them; b becomes the residual that is left. */
+/* x + the change of a KSPSolve; b becomes the residual that is left. */
 static PetscErrorCode Follow(CoupledSolver s, SolveReport *report) {
   PetscFunctionBeginUser;
   PetscCall(VecAXPY(s->x, 1, s->change));
   PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
-  PetscCall(ReducedUpdate(s->reduced, s->pending, s->x, s->b));
+  PetscCall(ReducedAdd(s->reduced, s->pending, s->x, s->b));
   PetscCall(VecSet(s->pending, 0));
   PetscCall(VecNorm(s->b, NORM_2, &report->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One KSPSolve for the residual b, whose change is added to x, w, p, or what it has tried where that is enough. */
-static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscReal goal, SolveReport *report) {
+/* One KSPSolve for the residual b, whose change is added to x, or what it has tried where that is enough. */
+static PetscErrorCode Correct(CoupledSolver s, PetscReal goal, SolveReport *report) {
   Trial *t = &s->trial;
   PetscInt its;
   PetscFunctionBeginUser;
@@ -214,25 +212,26 @@ static PetscErrorCode Correct(CoupledSolver s, const CoupledProblem *q, PetscRea
     PetscCall(VecCopy(t->x, s->x));
     PetscCall(VecSet(s->pending, 0));
     report->residual = t->residual;
-  } else if (its > 0 || q->w) /* without w nothing is left to be done where the first guess is good enough */
+  } else if (its > 0)
     PetscCall(Follow(s, report));
   t->state = TRIAL_NONE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first residual, that of the guess; where products leave no velocity behind, u of its forces is measured, and a
- * trial is wanted. */
+/* The first residual, that of the guess; on the grid a trial is wanted. */
 static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q) {
+  const Mobility m = s->coupling->mobility;
   Trial *t = &s->trial;
   PetscFunctionBeginUser;
+  PetscCall(ReducedBegin(s->reduced, q));
+  PetscCall(m->stokes ? Reference(s, q) : FreeReference(s));
   PetscCall(VecSet(s->x, 0));
   if (s->guess) PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, s->x));
-  PetscCall(ReducedBegin(s->reduced, q, s->x, s->b));
-  if (q->past)
-    s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * s->reduced->measures.past);
+  PetscCall(ReducedAdd(s->reduced, s->x, s->x, s->b));
+  s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * m->measures.past);
   PetscCall(VecSet(s->pending, 0));
   PetscCall(VecNorm(s->b, NORM_2, &t->scale));
-  t->state = s->reduced->stream && t->scale > 0 ? TRIAL_WANTED : TRIAL_NONE;
+  t->state = m->stokes && t->scale > 0 ? TRIAL_WANTED : TRIAL_NONE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -246,15 +245,14 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     report->residual = NAN;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(s->reduced->stokes ? Reference(s, q) : FreeReference(s, q));
   PetscCall(Begin(s, q));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   const PetscReal goal = PetscMax(rtol * s->reference, atol);
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
-    PetscCall(Correct(s, q, goal, report));
+    PetscCall(Correct(s, goal, report));
     if (report->why < 0 || report->residual <= 2 * goal) break;
   }
-  report->measures = s->reduced->measures;
+  report->measures = s->coupling->mobility->measures;
   PreconditionerSolved(s->preconditioner, report->its);
   if (report->why >= 0) PetscCall(UnknownsUnpack(s->unknowns, s->x, q->V, q->solid, q->sigma));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,7 +10,7 @@ typedef struct {
   PetscInt its;
   KSPConvergedReason why;  /* negative: the solve failed */
   PetscReal residual;      /* norm of the last residual */
-  StreamMeasures measures; /* measures of the velocity, where the problem's w is NULL */
+  StreamMeasures measures; /* measures of the velocity on the grid */
 } SolveReport;
 
 typedef enum { TRIAL_NONE, TRIAL_WANTED, TRIAL_MADE } TrialState;

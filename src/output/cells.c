@@ -53,8 +53,8 @@ static PetscErrorCode CellComponent(Scheme s, int c, const PetscScalar w[], Pets
    tension are not known. */
 static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   const State *q = &s->state;
-  const NearField near = s->coupling->near;
-  const DoubleLayer contrast = s->coupling->contrast;
+  const NearField near = s->coupling->mobility->near;
+  const DoubleLayer contrast = s->coupling->mobility->contrast;
   Vec F;
   PetscFunctionBeginUser;
   if (q->dt_last == 0 || !near) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,6 @@
 #include "precondition/denseblocks.h"
 #include "base/agree.h"
-#include "mobility/contrast.h"
+#include "problem/contrast.h"
 #include "precondition/denseblock.h"
 #include "numerics/rigidfit.h"
 
@@ -68,7 +68,7 @@ static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first
   PetscMPIInt size;
   PetscFunctionBeginUser;
   *motion = NULL;
-  if (!b->coupling->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!b->coupling->mobility->contrast) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMPIIntCast(4 * n * n, &size));
   PetscCall(PetscCalloc1(4 * n * n, motion));
   PetscCall(ContrastMatrix(b->coupling, PETSC_FALSE, a0, first, n, *motion));
@@ -144,7 +144,8 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
       const MarkerRange own = {q->first, q->n};
       PetscCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
-      if (b->coupling->near) PetscCall(NearFieldAdd(b->coupling->near, h2, PETSC_FALSE, q->first, q->n, Mob));
+      if (b->coupling->mobility->near)
+        PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, q->first, q->n, Mob));
       PetscCall(AssembleMotion(b, a0, q->first, q->n, &motion));
     }
     PetscCall(DenseBlockFactor(q, a0, b->coupling->treading + q->vesicle, Mob, motion, &good));

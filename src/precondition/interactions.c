@@ -118,11 +118,11 @@ PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
   for (PetscInt v = l->own; v < l->end; v++)
     most = PetscMax(most, PetscMax(2 * LayoutCount(l, v), 4 * LayoutCount(coarse, v)));
   PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->answer.force, most, &c->work));
-  if (s->coupling->contrast) {
+  if (s->coupling->mobility->contrast) {
     PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
-    PetscCall(DoubleCrossCreate(s->coupling->contrast, &c->dipoles));
+    PetscCall(DoubleCrossCreate(s->coupling->mobility->contrast, &c->dipoles));
   }
-  PetscCall(CoarseCorrectionCreate(s->coupling->near, s->coarse, &c->near));
+  PetscCall(CoarseCorrectionCreate(s->coupling->mobility->near, s->coarse, &c->near));
   PetscCall(CreateInteractionKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,7 +7,8 @@
 /* Whether the mobility between walls can be had from the box part's grids. */
 static PetscBool TakesBox(Coupling c) {
   const Grid g = c->fluid->grid;
-  return c->fluid->steady && c->near && c->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+  return c->fluid->steady && c->mobility->near && c->mobility->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE
+                                                                                                       : PETSC_FALSE;
 }
 
 PetscErrorCode MeanMobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, MeanMobility *out) {
@@ -16,9 +17,9 @@ PetscErrorCode MeanMobilityCreate(const FluidSpec *spec, Coupling c, PetscReal r
   PetscCall(PetscNew(&m));
   *out = m;
   m->coupling = c;
-  m->near = c->near ? TABLE_NEAR : PETSC_MAX_REAL;
+  m->near = c->mobility->near ? TABLE_NEAR : PETSC_MAX_REAL;
   if (TakesBox(c))
-    PetscCall(NearFieldCreateBoxPart(c->near, spec, PETSC_TRUE, &m->box));
+    PetscCall(NearFieldCreateBoxPart(c->mobility->near, spec, PETSC_TRUE, &m->box));
   else if (!c->fluid->grid->free)
     PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
   PetscCall(PetscMalloc1(2 * c->bodies->layout->M, &m->stencil));
@@ -37,7 +38,7 @@ PetscErrorCode MeanMobilityDestroy(MeanMobility *mobility) {
 
 PetscErrorCode MeanMobilitySetUp(MeanMobility m, PetscReal alpha) {
   PetscFunctionBeginUser;
-  m->part = CouplingGridPart(m->coupling, alpha);
+  m->part = MobilityGridPart(m->coupling->mobility, alpha);
   if (m->table) PetscCall(MobilityTableSetUp(m->table, alpha));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -134,7 +135,7 @@ PetscErrorCode MeanMobilityAssemble(MeanMobility m, const MarkerRange *rows, con
     for (PetscInt i = same ? j : begin; i < end; i++) {
       PetscReal one[4];
       if (m->box)
-        BoxPair(m->coupling->near, rows->first + i, columns->first + j, one);
+        BoxPair(m->coupling->mobility->near, rows->first + i, columns->first + j, one);
       else
         TablePair(m, rows->first + i, columns->first + j, one);
       if (same && i == j) one[2] = one[3]; /* symmetric to the bit */
@@ -149,7 +150,8 @@ PetscErrorCode MeanMobilityAddNear(Coupling c, PetscBool box, const MarkerRange 
   const Layout l = c->bodies->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
-  if (c->near) PetscCall(NearFieldAddBetween(c->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
+  if (c->mobility->near)
+    PetscCall(NearFieldAddBetween(c->mobility->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
   PetscCall(PetscMPIIntCast(4 * rows->n * columns->n, &size));
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, root, l->comm));

@@ -15,7 +15,7 @@
 
    Every rank makes a part of the entries; the sum of all parts is made on one rank. */
 #pragma once
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 #include "precondition/mobilitytable.h"
 
 typedef struct _p_MeanMobility *MeanMobility;

@@ -71,7 +71,7 @@ static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal Mob[]) {
   const Coupling c = b->coupling;
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M, own = BodiesFirstObstacle(c->bodies);
-  const PetscReal part = CouplingGridPart(c, c->fluid->alpha);
+  const PetscReal part = MobilityGridPart(c->mobility, c->fluid->alpha);
   const PetscScalar *U;
   PetscScalar *F;
   Stokes stokes;

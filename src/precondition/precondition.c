@@ -27,7 +27,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   PetscCall(PetscMalloc1(u->velocity, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
-  if (c->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
+  if (c->mobility->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
   } else if (CouplingHasMembrane(c)) {
     PetscCall(MeanMobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));

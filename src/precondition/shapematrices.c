@@ -1,5 +1,5 @@
 #include "precondition/shapeset.h"
-#include "mobility/contrast.h"
+#include "problem/contrast.h"
 #include "precondition/denseblock.h"
 #include "layers/doubleblock.h"
 #include "layers/singlepairs.h"
@@ -11,7 +11,7 @@ static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscR
   const PetscInt n = LayoutCount(c->membrane->layout, q->like);
   const PetscReal h2 = PetscSqr(c->fluid->grid->h);
   PetscFunctionBeginUser;
-  PetscCall(SelfLayer(&c->near->set, c->membrane->spectral[q->like], n, q->X, M));
+  PetscCall(SelfLayer(&c->mobility->near->set, c->membrane->spectral[q->like], n, q->X, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= h2;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -23,8 +23,8 @@ static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscRea
   PetscReal *D, *normal, *along;
   PetscFunctionBeginUser;
   *motion = NULL;
-  if (!s->coupling->contrast) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscReal ratio = s->coupling->contrast->ratio[q->like];
+  if (!s->coupling->mobility->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal ratio = s->coupling->mobility->contrast->ratio[q->like];
   PetscCall(PetscMalloc1(n * n, motion));
   PetscCall(PetscMalloc3(n * n, &D, n, &normal, n / 2, &along));
   PetscCall(DoubleGeometry(m->spectral[q->like], n / 2, q->X, normal, along));
@@ -63,7 +63,7 @@ static PetscErrorCode AnswerSources(SharedShapes s, const SharedShape *q, const 
   PetscReal *J = F + 2 * n;
   (void)PetscArraycpy(J, V, 2 * n);
   MembraneLabelDerivative(m, q->like, q->treading / s->a0, V, J);
-  for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->contrast->ratio[q->like];
+  for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->mobility->contrast->ratio[q->like];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

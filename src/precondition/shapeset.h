@@ -2,7 +2,7 @@
    and their products with the columns of all own vesicles that take it, each in the shape's frame. */
 #pragma once
 #include "precondition/coarsegrid.h"
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 #include "precondition/curvepoints.h"
 #include "numerics/packedmatrix.h"
 #include "numerics/rigidfit.h"

@@ -15,7 +15,7 @@ static PetscErrorCode CreateShapeWork(SharedShapes s) {
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
   PetscCall(
       PetscMalloc3(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to, 2 * l->n, &s->alone.force));
-  if (s->coupling->contrast) PetscCall(PetscMalloc1(2 * l->n, &s->alone.jump));
+  if (s->coupling->mobility->contrast) PetscCall(PetscMalloc1(2 * l->n, &s->alone.jump));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,7 +69,7 @@ PetscErrorCode SharedShapesDestroy(SharedShapes *shapes) {
 /* Whether two vesicles have as many markers, as far apart, the same stiffness and the same viscosity. */
 static PetscBool AreAlike(Coupling c, PetscInt v, PetscInt w) {
   const Membrane m = c->membrane;
-  if (c->contrast && c->contrast->ratio[v] != c->contrast->ratio[w]) return PETSC_FALSE;
+  if (c->mobility->contrast && c->mobility->contrast->ratio[v] != c->mobility->contrast->ratio[w]) return PETSC_FALSE;
   return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
                  PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w]
              ? PETSC_TRUE
@@ -130,7 +130,9 @@ static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading
   PetscFunctionBeginUser;
   PetscCall(ArrayReserve((size_t)s->count + 1, &s->room, &s->shape));
   const PetscInt n = LayoutCount(m->layout, like);
-  const PetscBool jumps = s->coupling->contrast && s->coupling->contrast->ratio[like] != 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool jumps = s->coupling->mobility->contrast && s->coupling->mobility->contrast->ratio[like] != 1
+                              ? PETSC_TRUE
+                              : PETSC_FALSE;
   SharedShape *q = &s->shape[s->count++];
   *q = (SharedShape){.like = like,
                      .treading = treading,

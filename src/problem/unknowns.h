@@ -2,7 +2,7 @@
    rank's part of the vector is V [2n], the solved part of its own markers' velocity, F [2w], the fluid's force on its
    own obstacles' markers, and sigma [n], the tension of its own edges. Residuals are laid out alike. */
 #pragma once
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 
 typedef struct _p_Unknowns *Unknowns;
 struct _p_Unknowns {

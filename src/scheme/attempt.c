@@ -1,7 +1,6 @@
 /* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
 #include "base/agree.h"
 #include "bodies/turning.h"
-#include "mobility/contrast.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
 
@@ -72,14 +71,14 @@ static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The history uhat: in f, with k = lag E uhat, or as flows beside f; none in quasi-steady flow. next.w is used for
+/* The history uhat: as flows beside f, or in f where there is no body; none in quasi-steady flow. next.w is used for
    uhat. */
 static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   const Vec *flow = STATES(s, flow);
   PetscFunctionBeginUser;
   d->past.count = d->next.flow && !s->fluid->steady ? b->order : 0;
-  d->past.part = CouplingGridPart(s->coupling, s->fluid->alpha);
-  d->past.lag = CouplingLag(s->coupling, s->fluid->alpha);
+  d->past.part = MobilityGridPart(s->coupling->mobility, s->fluid->alpha);
+  d->past.lag = MobilityLag(s->coupling->mobility, s->fluid->alpha);
   d->past.made = d->next.flow;
   for (PetscInt j = 0; j < d->past.count; j++) {
     d->past.weight[j] = b->history[j];
@@ -87,13 +86,12 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   }
   if (s->fluid->steady || d->next.flow) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(HistorySum(b->order, b->history, 1, STATES(s, w), d->next.w));
-  PetscCall(CouplingAddPast(s->coupling, d->next.w, d->known));
   PetscCall(ForcingAdd(&d->next.forcing, d->next.w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - E^T F/h^2 - N(w*) and k = lag E uhat - C F - V d/dt Y, F minus the known forces, Y = Xhat + u_inf/a0, V
-   the labels' speed, and what holds obstacles in the flow. next.w is used for w*. */
+/* f = uhat - N(w*), minus the known forces F at Y = Xhat + u_inf/a0, the known motion u_inf + v dY/dt with the labels'
+   speed v, and k, u_inf less the obstacles' velocity. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   Forcing *f = &d->next.forcing;
   PetscFunctionBeginUser;
@@ -102,11 +100,9 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(Past(s, d, b));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   PetscCall(CouplingKnownForce(s->coupling, d->Y, d->Xstar, d->force));
-  PetscCall(CouplingSpreadForce(s->coupling, d->force, f));
-  if (d->moved)
-    PetscCall(ContrastKnown(s->coupling, s->background, d->Y, d->moved, d->known));
-  else
-    PetscCall(CouplingTread(s->coupling, -1, d->Y, d->known));
+  PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
+  PetscCall(VecCopy(s->background, d->moved));
+  PetscCall(CouplingTread(s->coupling, 1, d->Y, d->moved));
   PetscCall(AddObstacleData(s, d->known));
   if (d->convection) {
     PetscCall(HistorySum(b->order, b->star, 1, STATES(s, w), d->next.w));
@@ -131,28 +127,30 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u, p, sigma of the new time (and V); report.failure when the solver fails. */
+/* sigma and V of the new time, and the velocity where the states have it; report.failure when the solver fails. */
 static PetscErrorCode Solve(Scheme s, Coupled *d) {
   State *n = &d->next;
-  const Vec w = n->flow ? NULL : n->w;
-  const CoupledProblem problem = {.moved = d->moved,
-                                  .f = &n->forcing,
+  const CoupledProblem problem = {.known = {.f = &n->forcing,
+                                            .F = d->force,
+                                            .outside = ForcesReach(s->coupling->forces) == FORCE_OUTSIDE,
+                                            .G = d->moved,
+                                            .past = n->flow ? &d->past : NULL},
                                   .g = s->g,
                                   .k = d->known,
-                                  .F = d->force,
-                                  .w = w,
-                                  .p = n->p,
                                   .sigma = n->sigma,
                                   .V = d->V,
                                   .solid = n->solid,
-                                  .graded = d->graded,
-                                  .past = n->flow ? &d->past : NULL};
+                                  .graded = d->graded};
   SolveReport report;
   PetscFunctionBeginUser;
+  n->a0 = s->fluid->a0;
+  if (!CouplingHasBodies(s->coupling)) {
+    PetscCall(MobilityFields(s->coupling->mobility, &n->forcing, n->w, n->p));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(CoupledSolverSolve(d->solver, &problem, &report));
   s->report.coupled_its += report.its;
   s->report.measures = report.measures;
-  n->a0 = s->fluid->a0;
   if (PreconditionerIsNew(d->solver->preconditioner)) {
     PetscCall(VecCopy(d->Xstar, d->made_at));
     PetscCall(PetscArraycpy(d->made_with, d->history.treading, s->membrane->layout->bodies));
@@ -162,34 +160,19 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest divergence of the velocity of the step; sources: minus what it should be, NULL: nothing. */
-static PetscErrorCode MeasureDivergence(Scheme s, Coupled *d, Vec sources) {
-  PetscFunctionBeginUser;
-  if (!d->next.p)
-    s->report.div_max = s->report.measures.divergence;
-  else
-    PetscCall(SchemeMeasureDivergence(s, d->next.w, sources));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt. */
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
-  if (!CouplingHasMembrane(s->coupling)) {
-    PetscCall(MeasureDivergence(s, d, NULL));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  if (n->p)
+    PetscCall(SchemeMeasureDivergence(s, n->w, NULL));
+  else
+    s->report.div_max = s->report.measures.divergence;
+  if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeMarkerVelocity(s, d->V, d->P));
   PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
-  if (d->moved && n->p) {
-    PetscCall(ForcingClear(&n->forcing)); /* its source becomes the divergence of the velocity, minus */
-    PetscCall(ContrastSpread(s->coupling, n->U, &n->forcing));
-    PetscCall(VecScale(n->forcing.source, -1));
-  }
-  PetscCall(MeasureDivergence(s, d, d->moved ? n->forcing.source : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,7 +11,7 @@
    field there is no such distance between two vesicles, as finer points resolve the fluid between them, and parts of
    one vesicle are resolved down to 1.5 edges. */
 static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
-  if (!s->coupling->near) return CONTACT * s->fluid->grid->h;
+  if (!s->coupling->mobility->near) return CONTACT * s->fluid->grid->h;
   return v == w ? CLOSE_PARTS * s->membrane->ds[v] : 0;
 }
 
@@ -49,7 +49,7 @@ static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], PetscReal rea
 }
 
 static PetscErrorCode WarnOfContact(Scheme s, const PetscMPIInt pair[2]) {
-  const PetscBool exact = s->coupling->near ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool exact = s->coupling->mobility->near ? PETSC_TRUE : PETSC_FALSE;
   char who[64];
   PetscFunctionBeginUser;
   PetscCall(SchemeNamePair(s, pair[0] - 1, pair[1] - 1, "parts of vesicle %" PetscInt_FMT, sizeof(who), who));

@@ -247,8 +247,8 @@ static PetscErrorCode SetUpConvection(Scheme s, Coupled *d) {
    and from the flow. */
 static PetscErrorCode CreateStates_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  const PetscBool later = ReducedNeedsNoPressure(d->solver->reduced);
-  const PetscBool contrast = s->coupling->contrast ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool later = s->coupling->mobility->stokes && CouplingHasBodies(s->coupling) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool contrast = s->coupling->mobility->contrast ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool grid = !s->fluid->steady && (!later || d->convection) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   if (later && !s->fluid->steady) PetscCall(StreamFlowsCreateVec(CoupledFlows(d), &s->state.flow));
@@ -276,7 +276,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(SetUpConvection(s, d));
   PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));
-  for (int i = 0; i < (s->coupling->contrast ? 7 : 6); i++) PetscCall(VecDuplicate(s->state.X, markers[i]));
+  for (int i = 0; i < 7; i++) PetscCall(VecDuplicate(s->state.X, markers[i]));
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));

@@ -19,7 +19,7 @@ typedef struct {
   PetscReal *made_with;  /* [vesicles] label speeds with which these blocks were made */
   StreamPast past;       /* the states before, where their flows act as a force */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
-  Vec moved;             /* known part of the markers' motion; NULL without viscosity contrast */
+  Vec moved;             /* known part of the markers' motion */
   Vec force;             /* minus the known part of the force on all bodies' markers */
   Vec V, known, Y;       /* solved part and known part of the markers' velocity, obstacles included; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
@@ -28,7 +28,7 @@ typedef struct {
 
 /* The flows of a scheme whose states have them. */
 static inline StreamFlows CoupledFlows(const Coupled *d) {
-  return d->solver->reduced->stream->flows;
+  return d->solver->coupling->mobility->stream->flows;
 }
 
 /* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.

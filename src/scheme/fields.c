@@ -25,14 +25,14 @@ PetscErrorCode SchemeFields(Scheme s) {
   PetscFunctionBeginUser;
   if (q->flow) PetscCall(SchemeVelocity(s));
   if (q->fields == FIELDS_MADE) PetscFunctionReturn(PETSC_SUCCESS);
-  const Reduced r = ((Coupled *)s->data)->solver->reduced;
+  const Mobility m = s->coupling->mobility;
   q->fields = FIELDS_MADE;
   if (q->flow) {
-    PetscCall(ReducedPressure(r, &q->forcing, q->w, q->p));
+    PetscCall(MobilityPressure(m, &q->forcing, q->w, q->p));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, q->a0));
-  PetscCall(ReducedFields(r, &q->forcing, q->w, q->p));
+  PetscCall(MobilityFields(m, &q->forcing, q->w, q->p));
   if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

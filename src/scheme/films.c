@@ -33,7 +33,7 @@ static CurveRoom BoxOfCurves(Scheme s) {
 
 static PetscReal Thin(Scheme s) {
   PetscReal ds = 0;
-  if (!s->coupling->near) return s->fluid->grid->h;
+  if (!s->coupling->mobility->near) return s->fluid->grid->h;
   for (PetscInt v = 0; v < s->coupling->bodies->layout->bodies; v++) ds = PetscMax(ds, s->coupling->bodies->ds[v]);
   return THIN * ds;
 }
@@ -286,7 +286,7 @@ PetscErrorCode FilmsWarn(Scheme s) {
   CurveFilm film;
   View view;
   PetscFunctionBeginUser;
-  if (!s->coupling->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->coupling->mobility->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeCurves(s, s->state.t, s->state.X));
   SeeCurves(s, s->work_all, &view);
   PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, COARSE, &film));

@@ -89,9 +89,9 @@ static PetscReal BackgroundFlux(Scheme s) {
 static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
-  if (!s->coupling->contrast || !s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->coupling->mobility->contrast || !s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.U, &U));
-  PetscCall(DoubleLayerMean(s->coupling->contrast, U, mean));
+  PetscCall(DoubleLayerMean(s->coupling->mobility->contrast, U, mean));
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

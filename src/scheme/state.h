@@ -1,6 +1,6 @@
 /* The state that a scheme advances in time. Vectors are distributed like the grid and the markers. */
 #pragma once
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 
 /* Which of w and p have been made; SchemeVelocity makes w, SchemeFields makes both. */
 typedef enum { FIELDS_MADE, FIELDS_WITHOUT_P, FIELDS_WITHOUT_BOTH } StateFields;

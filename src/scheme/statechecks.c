@@ -149,7 +149,8 @@ static PetscErrorCode WarnOfStep(Scheme s) {
 /* Without scaled stencils the box part of the near field is right in corners too. */
 PetscErrorCode SchemeCheck(Scheme s) {
   const Grid g = s->fluid->grid;
-  const PetscBool corners = s->coupling->near && !g->free && g->wall[0] && g->wall[1] && s->coupling->markers->scaled;
+  const PetscBool corners = s->coupling->mobility->near && !g->free && g->wall[0] && g->wall[1] &&
+                            s->coupling->markers->scaled;
   char *failure = s->report.failure;
   PetscFunctionBeginUser;
   PetscCall(CheckFinite(s));
@@ -159,7 +160,7 @@ PetscErrorCode SchemeCheck(Scheme s) {
     PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
   if (!*failure) PetscCall(CheckVesicles(s, CheckLimits, failure));
   if (!*failure) PetscCall(SchemeCheckContact(s));
-  if (!*failure && s->coupling->near) PetscCall(WarnOfVesicle(s, CheckSpectrum, &s->warnings.rough));
+  if (!*failure && s->coupling->mobility->near) PetscCall(WarnOfVesicle(s, CheckSpectrum, &s->warnings.rough));
   if (!*failure && corners) PetscCall(WarnOfVesicle(s, CheckCorner, &s->warnings.corner));
   if (!*failure) PetscCall(FilmsWarn(s));
   if (!*failure) PetscCall(WarnOfStep(s));

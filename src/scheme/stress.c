@@ -99,7 +99,7 @@ PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X, Vec U) {
   PetscCall(Stresslets(s, F, X, sum));
   PetscCall(Shortfall(s, F, near));
   PetscCall(VecGetArrayRead(U, &u));
-  if (s->coupling->contrast) PetscCall(DoubleLayerStress(s->coupling->contrast, u, sum, near));
+  if (s->coupling->mobility->contrast) PetscCall(DoubleLayerStress(s->coupling->mobility->contrast, u, sum, near));
   PetscCall(VecRestoreArrayRead(U, &u));
   out->viscosity[0] = 1 + (shear - near[0] / area) / scale;
   out->viscosity[1] = 1 - sum[2] / area / scale;

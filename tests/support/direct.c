@@ -2,7 +2,7 @@
 #include "bodies/bending.h"
 #include "bodies/repulsion.h"
 #include "bodies/turning.h"
-#include "mobility/contrast.h"
+#include "problem/contrast.h"
 
 PetscErrorCode DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value) {
   PetscFunctionBeginUser;
@@ -27,7 +27,7 @@ static PetscErrorCode Begin(Coupling c, Direct *d) {
                                 [PART_V] = 2 * M,
                                 [PART_F] = 2 * M,
                                 [PART_SOLID] = 2 * (c->bodies->layout->M - M),
-                                [PART_JUMP] = c->contrast ? 2 * M : 0,
+                                [PART_JUMP] = c->mobility->contrast ? 2 * M : 0,
                                 [PART_AREA] = c->area ? c->membrane->layout->bodies : 0,
                                 [PART_MEAN] = DirectMeans(d)};
   for (int k = 0; k < PARTS; k++)
@@ -70,7 +70,7 @@ static PetscErrorCode AddFluid(Direct *d) {
 /* E: -E w, what the markers have of it, in the rows of velocities, E^T F in the momentum. */
 static PetscErrorCode AddInterpolation(Direct *d) {
   const Grid g = d->grid;
-  const PetscReal part = CouplingGridPart(d->c, d->fluid->alpha);
+  const PetscReal part = MobilityGridPart(d->c->mobility, d->fluid->alpha);
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < 2 * d->c->bodies->layout->M; q++) {
     const Stencil *s = &d->c->markers->stencil[q];
@@ -116,7 +116,7 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
     MembraneLabelDerivative(m, v, d->c->treading[v] / a0, unit, turned);
     for (PetscInt r = 0; r < 2 * n; r++) {
       PetscCall(DirectAdd(d, F + r, V + c, force[r]));
-      if (!d->c->contrast) PetscCall(DirectAdd(d, V + r, V + c, turned[r]));
+      if (!d->c->mobility->contrast) PetscCall(DirectAdd(d, V + r, V + c, turned[r]));
     }
     if (d->c->area) PetscCall(DirectAdd(d, V + c, area, d->c->area->z[2 * first + c]));
     if (d->c->area) PetscCall(DirectAdd(d, area, V + c, d->c->area->z[2 * first + c]));
@@ -150,7 +150,7 @@ static PetscErrorCode AddNearField(Direct *d) {
   PetscReal *C;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * n, &C));
-  if (d->c->near) PetscCall(NearFieldAdd(d->c->near, h2, PETSC_TRUE, 0, n / 2, C));
+  if (d->c->mobility->near) PetscCall(NearFieldAdd(d->c->mobility->near, h2, PETSC_TRUE, 0, n / 2, C));
   for (PetscInt k = 0; k < n * n; k++) PetscCall(DirectAdd(d, DirectRow(d, k % n), d->first[PART_F] + k / n, C[k]));
   PetscCall(PetscFree(C));
   for (PetscInt b = 0; o && b < o->layout->bodies; b++)
@@ -168,7 +168,7 @@ static PetscErrorCode Assemble(Direct *d, Mat *A) {
   PetscCall(AddSprings(d));
   for (PetscInt v = 0; v < d->c->membrane->layout->bodies; v++) PetscCall(AddVesicle(d, v));
   PetscCall(AddNearField(d));
-  if (d->c->contrast) PetscCall(DirectAddContrast(d));
+  if (d->c->mobility->contrast) PetscCall(DirectAddContrast(d));
   PetscCall(MatCreate(PETSC_COMM_SELF, A));
   PetscCall(MatSetSizes(*A, n, n, n, n));
   PetscCall(MatSetType(*A, MATSEQAIJ));
@@ -220,22 +220,31 @@ static PetscErrorCode Give(const Direct *d, Vec x, int part, Vec to) {
    divergence, and the mean velocity that goes with them. */
 static PetscErrorCode RightHandSide(const Direct *d, const CoupledProblem *q, Vec rhs) {
   const PetscInt *first = d->first, V = first[PART_F] - first[PART_V];
+  const Mobility m = d->c->mobility;
+  const Layout l = d->c->membrane->layout;
+  const MobilityKnown *known = &q->known;
+  const PetscScalar *G;
   PetscScalar *k, *b;
   PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(known->G, &G));
   PetscCall(VecGetArray(q->k, &k));
-  PetscCall(CouplingNearField(d->c, -1, q->F, k));
-  if (d->c->contrast) PetscCall(ContrastAdd(d->c, -1, q->moved, k));
+  PetscCall(MobilityAddLayers(m, known->F, known->G, k));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) k[i] -= MobilityWeight(m, v) * G[i];
   PetscCall(VecRestoreArray(q->k, &k));
-  if (d->c->contrast) PetscCall(ContrastSpread(d->c, q->moved, q->f));
+  if (m->contrast) PetscCall(DoubleLayerSpread(m->contrast, G, known->f));
+  PetscCall(VecRestoreArrayRead(known->G, &G));
+  PetscCall(MobilityBegin(m, known));
   PetscCall(VecSet(rhs, 0));
   PetscCall(VecGetArray(rhs, &b));
-  PetscCall(Take(q->f->values, 0, first[FIELD_P], b));
-  if (q->f->source) PetscCall(Take(q->f->source, 0, first[PART_SIGMA] - first[FIELD_P], b + first[FIELD_P]));
+  PetscCall(Take(known->f->values, 0, first[FIELD_P], b));
+  if (known->f->source) PetscCall(Take(known->f->source, 0, first[PART_SIGMA] - first[FIELD_P], b + first[FIELD_P]));
   PetscCall(Take(q->g, 0, V / 2, b + first[PART_SIGMA]));
   PetscCall(Take(q->k, 0, V, b + first[PART_V]));
   PetscCall(Take(q->k, V, first[PART_JUMP] - first[PART_SOLID], b + first[PART_SOLID]));
   for (PetscInt v = first[PART_AREA]; v < first[PART_MEAN]; v++) b[v] = d->c->area->speed[v - first[PART_AREA]];
-  for (PetscInt f = 0; f < DirectMeans(d); f++) b[first[PART_MEAN] + f] = q->f->mean[f] * d->grid->n[0] * d->grid->n[1];
+  for (PetscInt f = 0; f < DirectMeans(d); f++)
+    b[first[PART_MEAN] + f] = known->f->mean[f] * d->grid->n[0] * d->grid->n[1];
   PetscCall(VecRestoreArray(rhs, &b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -264,7 +273,7 @@ static PetscErrorCode SolveLU(Mat A, Vec b, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DirectSolve(Coupling c, const CoupledProblem *q) {
+PetscErrorCode DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
   Direct d;
   Mat A;
   Vec b, x, rows, columns;
@@ -281,10 +290,10 @@ PetscErrorCode DirectSolve(Coupling c, const CoupledProblem *q) {
   PetscCall(VecPointwiseMult(b, b, rows));
   PetscCall(SolveLU(A, b, x));
   PetscCall(VecPointwiseMult(x, x, columns));
-  PetscCall(Give(&d, x, FIELD_U, q->w));
-  PetscCall(Give(&d, x, FIELD_P, q->p));
-  PetscCall(VecSum(q->p, &mean));
-  PetscCall(VecShift(q->p, -mean / ((PetscReal)d.grid->n[0] * d.grid->n[1])));
+  PetscCall(Give(&d, x, FIELD_U, w));
+  PetscCall(Give(&d, x, FIELD_P, p));
+  PetscCall(VecSum(p, &mean));
+  PetscCall(VecShift(p, -mean / ((PetscReal)d.grid->n[0] * d.grid->n[1])));
   PetscCall(Give(&d, x, PART_SIGMA, q->sigma));
   PetscCall(Give(&d, x, PART_V, q->V));
   if (q->solid) PetscCall(Give(&d, x, PART_SOLID, q->solid));

@@ -4,9 +4,9 @@
 
 /* DirectSolve - [H + B E/a0, G, S; G^T; S^T] with the near field, at the coupling's markers, p of zero mean. The
    markers' velocity V and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4 V on them are unknowns of their own, as
-   are the obstacles' F and the jump of a viscosity contrast, so that the matrix is sparse. Takes f, g, k, F and moved
-   of the problem, f with the states before it, and changes f and k; gives w, p, sigma, V and solid. */
-PetscErrorCode DirectSolve(Coupling coupling, const CoupledProblem *problem);
+   are the obstacles' F and the jump of a viscosity contrast, so that the matrix is sparse. Takes what is
+   known, g and k of the problem, f with the states before it, and changes f and k; gives w, p, sigma, V and solid. */
+PetscErrorCode DirectSolve(Coupling coupling, const CoupledProblem *problem, Vec w, Vec p);
 
 /* Where the unknowns stand: the fields of the grid, then tension, V of the vesicles' markers, F of the vesicles' and of
    the obstacles' markers, the jump, areas, and uniform forces g that hold the mean velocity. */

@@ -1,6 +1,6 @@
-/* Viscosity contrast in the matrix (mobility/contrast.h). The jump J, less its flux, is an unknown of its own, so that
+/* Viscosity contrast in the matrix (problem/contrast.h). The jump J, less its flux, is an unknown of its own, so that
    the fluid's rows have the few markers near them only. */
-#include "mobility/contrast.h"
+#include "problem/contrast.h"
 #include "direct.h"
 
 /* The tensor of the unit jump of marker k in direction c. */
@@ -14,7 +14,7 @@ static void UnitTensor(DoubleLayer s, PetscInt k, int c, PetscReal T[DIPOLE_COUN
 /* The unit jump's column: its dipoles in the fluid's rows, what they have of the mean velocity, and minus the box part
    D (columns one after another, NULL: none) in the rows of bodies. */
 static PetscErrorCode AddUnitJump(Direct *d, PetscInt k, int c, const PetscReal D[]) {
-  const DoubleLayer s = d->c->contrast;
+  const DoubleLayer s = d->c->mobility->contrast;
   const Grid g = d->grid;
   const PetscInt column = d->first[PART_JUMP] + 2 * k + c, rows = 2 * d->c->bodies->layout->M;
   const PetscReal *X = d->c->markers->X + 2 * k;
@@ -38,7 +38,7 @@ static PetscErrorCode AddUnitJump(Direct *d, PetscInt k, int c, const PetscReal 
 
 /* J - Q (1 - ratio) (V + (treading/a0) dV/dt) = 0 of one vesicle, a column of V at a time. */
 static PetscErrorCode AddJump(Direct *d, PetscInt v) {
-  const DoubleLayer s = d->c->contrast;
+  const DoubleLayer s = d->c->mobility->contrast;
   const Membrane m = d->c->membrane;
   const PetscInt first = 2 * m->layout->start[v], n = 2 * LayoutCount(m->layout, v);
   const PetscInt J = d->first[PART_JUMP] + first, V = d->first[PART_V] + first;
@@ -69,7 +69,7 @@ static PetscErrorCode AddToObstacles(Direct *d) {
   PetscReal *C, *row;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(n * n, &C, M, &row));
-  PetscCall(DoubleLayerAdd(d->c->contrast, -1, PETSC_TRUE, 0, n / 2, C));
+  PetscCall(DoubleLayerAdd(d->c->mobility->contrast, -1, PETSC_TRUE, 0, n / 2, C));
   for (PetscInt i = M; i < n; i++) {
     for (PetscInt j = 0; j < M; j++) row[j] = C[j * n + i];
     PetscCall(ContrastTread(m, 0, m->layout->bodies, d->c->treading, d->fluid->a0, 1, row));
@@ -80,7 +80,7 @@ static PetscErrorCode AddToObstacles(Direct *d) {
 }
 
 PetscErrorCode DirectAddContrast(Direct *d) {
-  const DoubleLayer s = d->c->contrast;
+  const DoubleLayer s = d->c->mobility->contrast;
   const Layout l = d->c->membrane->layout;
   const PetscInt n = 2 * l->M, V = d->first[PART_V];
   const PetscInt tensors = DIPOLE_COUNT * d->c->bodies->layout->M, rows = 2 * d->c->bodies->layout->M;

@@ -83,7 +83,8 @@ static inline PetscErrorCode TestWorldBuildFor(const CouplingSetting *setting, T
 
 static inline PetscErrorCode TestWorldBuild(TestWorld *w) {
   const SceneCoupling *c = &w->scene->coupling;
-  const CouplingSetting setting = {.kernel = c->kernel, .near = (NearFieldType)c->near_field};
+  const CouplingSetting setting = {
+      .mobility = {.kernel = c->kernel, .near = (NearFieldType)c->near_field, .solver = !SceneIsProjection(w->scene)}};
   PetscFunctionBeginUser;
   PetscCall(TestWorldBuildFor(&setting, w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,7 +141,7 @@ static inline PetscErrorCode TestWorldRespond(TestWorld *t, Stokes stokes, Petsc
   PetscCall(MarkersInterpolate(t->coupling->markers, w, U));
   PetscCall(VecGetArrayRead(F, &f));
   PetscCall(VecGetArray(U, &u));
-  if (near) PetscCall(NearFieldApply(t->coupling->near, 1, f, u));
+  if (near) PetscCall(NearFieldApply(t->coupling->mobility->near, 1, f, u));
   PetscCall(VecRestoreArray(U, &u));
   PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(DMRestoreGlobalVector(g->da[FIELD_P], &p));

@@ -121,12 +121,12 @@ static PetscErrorCode RunCreate(const char options[], PetscInt n, PetscReal dt, 
 static Vec body_force; /* in every solve's momentum; NULL: none */
 
 /* In the place of the library's, which it calls: the dynamic linker finds this one first. */
-PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
-  PetscErrorCode (*solve)(CoupledSolver, const CoupledProblem *, SolveReport *);
+PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
+  PetscErrorCode (*solve)(Mobility, const Forcing *, Vec, Vec);
   PetscFunctionBeginUser;
-  *(void **)&solve = dlsym(RTLD_NEXT, "CoupledSolverSolve");
-  if (body_force) PetscCall(ForcingAdd(q->f, body_force));
-  PetscCall(solve(s, q, report));
+  *(void **)&solve = dlsym(RTLD_NEXT, "MobilityFields");
+  if (body_force) PetscCall(VecAXPY(f->values, 1, body_force));
+  PetscCall(solve(m, f, u, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,7 @@
 /* The double layer of a viscosity contrast, grid and near field together: the lattice's tables, rigid motions, flux,
    that it is adjoint to itself through the single layer, and the dissipation. */
 #include "facts.h"
-#include "mobility/contrast.h"
+#include "problem/contrast.h"
 #include "numerics/blas.h"
 #include "layers/curvelayer.h"
 
@@ -82,7 +82,7 @@ static PetscErrorCode Create(const char options[], Double *d) {
   PetscFunctionBeginUser;
   PetscCall(TestScene(options, &w->scene));
   PetscCall(TestWorldBuild(w));
-  PetscCall(DoubleLayerCreate(w->coupling->near, &ratio, &w->coupling->contrast));
+  PetscCall(DoubleLayerCreate(w->coupling->mobility->near, &ratio, &w->coupling->mobility->contrast));
   PetscCall(TestWorldPlace(1, w));
   PetscCall(StokesCreate(w->fluid, &d->stokes));
   PetscCall(TestFieldVecs(w->fluid->grid->velocity, &d->r, &d->w, NULL));
@@ -120,12 +120,12 @@ static PetscErrorCode Respond(Double *d) {
   PetscCall(VecSet(d->r, 0));
   PetscCall(VecSet(d->p, 0));
   PetscCall(VecGetArrayRead(d->U, &u));
-  PetscCall(DoubleLayerSpread(c->contrast, u, &f));
+  PetscCall(DoubleLayerSpread(c->mobility->contrast, u, &f));
   PetscCall(StokesSolve(d->stokes, d->r, d->p, d->w, d->p));
   if (!g->wall[1]) PetscCall(AddConstant(d->w, GridLocalU(g), f.mean));
   PetscCall(MarkersInterpolate(c->markers, d->w, d->V));
   PetscCall(VecGetArray(d->V, &v));
-  PetscCall(DoubleLayerApply(c->contrast, 1, u, v));
+  PetscCall(DoubleLayerApply(c->mobility->contrast, 1, u, v));
   PetscCall(VecRestoreArray(d->V, &v));
   PetscCall(VecRestoreArrayRead(d->U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,7 +133,7 @@ static PetscErrorCode Respond(Double *d) {
 
 /* U of marker k: e_x, e_y, a turn, or along the curve. */
 static PetscErrorCode SetMotion(Double *d, int which) {
-  const DoubleLayer s = d->world.coupling->contrast;
+  const DoubleLayer s = d->world.coupling->mobility->contrast;
   const Layout l = d->world.layout;
   PetscScalar *u;
   PetscFunctionBeginUser;
@@ -173,8 +173,8 @@ static PetscErrorCode CheckMotions(const char name[], const char options[]) {
   PetscCall(Respond(&d));
   PetscCall(PetscMalloc1(2 * d.world.layout->M, &V));
   PetscCall(LayoutGatherVec(d.world.layout, d.V, V));
-  for (PetscInt k = 0; k < 2 * d.world.layout->M; k++) flux += d.world.coupling->contrast->normal[k] * V[k];
-  flux /= d.world.coupling->contrast->length[0];
+  for (PetscInt k = 0; k < 2 * d.world.layout->M; k++) flux += d.world.coupling->mobility->contrast->normal[k] * V[k];
+  flux /= d.world.coupling->mobility->contrast->length[0];
   CHECK(PetscAbsReal(flux) < 1e-9, "%s: no flux of a motion along the curve, speed 1, a length: %.1e", name, flux);
   PetscCall(PetscFree(V));
   PetscCall(Destroy(&d));
@@ -227,7 +227,7 @@ static PetscErrorCode CheckAdjoint(PetscInt n, const PetscReal D[], const PetscR
 /* Orthonormal motions of 2 M markers that stretch no edge and keep the area: the first M - 1 columns of Q[2M][2M]. */
 static PetscErrorCode Inextensible(const TestWorld *w, PetscReal Q[]) {
   const PetscInt M = w->layout->M, n = 2 * M, rows = M + 1;
-  const DoubleLayer s = w->coupling->contrast;
+  const DoubleLayer s = w->coupling->mobility->contrast;
   PetscReal *tau, *A, *l, *U;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n, &tau, rows * n, &A, n, &l, n, &U));
@@ -250,7 +250,7 @@ static PetscErrorCode Inextensible(const TestWorld *w, PetscReal Q[]) {
 /* F[n + 1][m]: forces and a pressure with S F + p n = B U, n . F = 0, of the m columns U of [n], B of a ratio. */
 static PetscErrorCode ForcesOf(const Double *d, PetscReal ratio, const PetscReal D[], const PetscReal S[], PetscInt m,
                                const PetscReal U[], PetscReal F[]) {
-  const PetscReal *normal = d->world.coupling->contrast->normal;
+  const PetscReal *normal = d->world.coupling->mobility->contrast->normal;
   const PetscInt n = 2 * d->world.layout->M, size = n + 1;
   PetscReal *A;
   PetscBLASInt *pivot;

@@ -57,7 +57,7 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
   PetscCall(
       PetscSNPrintf(options, sizeof(options), EXACT PERIODIC "-scheme_type coupled -delta_type %s %s", kernel, scene));
   PetscCall(TestWorldCreate(options, &w));
-  const NearField f = w.coupling->near;
+  const NearField f = w.coupling->mobility->near;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->far[NEAR_TWO].reach + 2;
   const Layout l = w.layout;
   PetscReal *all;
@@ -97,7 +97,7 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
   PetscCall(PetscSNPrintf(options, sizeof(options), EXACT PERIODIC "-scheme_type coupled -delta_type %s " LARGE "%s",
                           kernel, place));
   PetscCall(TestWorldCreate(options, &w));
-  const NearField f = w.coupling->near;
+  const NearField f = w.coupling->mobility->near;
   const PetscInt M = w.layout->M;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
   PetscReal *all;

@@ -154,7 +154,7 @@ static PetscErrorCode WholeMatrix(TestWorld *w, PetscReal *C) {
     PetscCall(PetscArrayzero(F, 2 * l->n));
     PetscCall(PetscArrayzero(U, 2 * l->n));
     if (j >= 2 * l->first && j < 2 * (l->first + l->n)) F[j - 2 * l->first] = 1;
-    PetscCall(NearFieldApply(w->coupling->near, 1, F, U));
+    PetscCall(NearFieldApply(w->coupling->mobility->near, 1, F, U));
     PetscCall(LayoutGather(l, 2, U, C + j * N));
   }
   PetscCall(PetscFree2(F, U));
@@ -200,7 +200,7 @@ static PetscErrorCode CheckSymmetry(const char name[], const char scene[], const
   const PetscInt N = 2 * w.layout->M;
   PetscCall(PetscMalloc2(N * N, &C, N * N, &same));
   PetscCall(WholeMatrix(&w, C));
-  blocks = w.coupling->near->list.count.blocks;
+  blocks = w.coupling->mobility->near->list.count.blocks;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &blocks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   Asymmetry(w.layout, C, worst);
   CHECK(worst[0] < 1e-14 && worst[1] < 1e-13, "%s, %s: C of %d blocks symmetric to %.1e, %.1e between vesicles", name,
@@ -261,7 +261,7 @@ static PetscErrorCode CheckReach(void) {
                             &w));
   const Layout l = w.layout;
   PetscCall(PetscCalloc1(4 * l->M * l->M, &C));
-  PetscCall(NearFieldAdd(w.coupling->near, 1, PETSC_TRUE, 0, l->M, C));
+  PetscCall(NearFieldAdd(w.coupling->mobility->near, 1, PETSC_TRUE, 0, l->M, C));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt u = 0; u < l->bodies; u++) {
       PetscInt pairs = 0;

@@ -144,7 +144,7 @@ static PetscErrorCode NearVelocity(int side, PetscReal shift, PetscReal U[][2]) 
     F[2 * k + 1 - normal] = PetscSinReal(3 * x + y) + x;
     F[2 * k + normal] = sign * (PetscCosReal(2 * x - 5 * y) + x * y);
   }
-  PetscCall(NearFieldApply(t.coupling->near, 1, F, V));
+  PetscCall(NearFieldApply(t.coupling->mobility->near, 1, F, V));
   PetscCall(LayoutGather(t.layout, 2, V, all));
   for (int k = 0; k < M; k++) {
     U[k][0] = all[2 * k + 1 - normal];

@@ -26,11 +26,12 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
   PetscCall(PetscOptionsInsertString(NULL, all));
   PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &world->scene));
   const CouplingSetting setting = {
-      .kernel = world->scene->coupling.kernel, .near = NEAR_EXACT, .spec = &world->scene->fluid, .box_part = box};
+      .mobility = {
+          .kernel = world->scene->coupling.kernel, .near = NEAR_EXACT, .spec = &world->scene->fluid, .box_part = box}};
   PetscCall(TestWorldBuildFor(&setting, world));
   PetscCall(TestWorldPlace(world->fluid->a0, world));
   PetscCall(PetscCalloc1(PetscSqr(2 * world->layout->M), &w->D));
-  if (box) PetscCall(AddAll(world->coupling->near->box, world->layout, w->D));
+  if (box) PetscCall(AddAll(world->coupling->mobility->near->box, world->layout, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,7 +98,7 @@ static PetscErrorCode CheckTable(const char name[], const char options[], PetscB
   PetscCall(PetscMalloc2(2 * w[0].world.layout->M, &normal, 2 * w[0].world.layout->M, &force));
   for (int k = 0; k < 2; k++) {
     CHECK(Asymmetry(&w[k]) == 0, "%s: D is symmetric to the bit, rank %d", name,
-          (int)w[k].world.coupling->near->box->at->rank);
+          (int)w[k].world.coupling->mobility->near->box->at->rank);
     Vectors(&w[k], normal, force);
     const PetscReal flux = Form(&w[k], normal, normal);
     if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
@@ -114,7 +115,8 @@ static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
   World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(k ? unlike : own, 63, PETSC_TRUE, &w[k]));
-  const PetscReal off = OffBy(&w[0], &w[1], 9), H = w[1].world.coupling->near->box->at->H / w[1].world.fluid->grid->h;
+  const PetscReal off = OffBy(&w[0], &w[1], 9),
+                  H = w[1].world.coupling->mobility->near->box->at->H / w[1].world.fluid->grid->h;
   CHECK(off < 0.05 && H > 2 && H < 3, "189 x 192 cells: from cells %.2f times as large, D within %.3f", H, off);
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -122,7 +124,7 @@ static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
 
 /* U[2M] = (E A^-1 E^T/h^2 + C + D) F where the Stokes solve is exact; D or not. */
 static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part, PetscReal all[]) {
-  const NearField near = w->world.coupling->near;
+  const NearField near = w->world.coupling->mobility->near;
   const BoxPart box = near->box;
   Stokes stokes;
   Vec F, U;

@@ -1,5 +1,5 @@
 /* The box part of the double layer: a product beside the sum over the eigenvectors of its table. */
-#include "mobility/contrast.h"
+#include "problem/contrast.h"
 #include "facts.h"
 
 #define SCENE                                                                                                          \
@@ -40,10 +40,10 @@ static PetscErrorCode CheckApply(const char name[], const char options[]) {
   TestWorld w;
   PetscFunctionBeginUser;
   PetscCall(TestWorldCreate(options, &w));
-  PetscCall(DoubleLayerCreate(w.coupling->near, &ratio, &w.coupling->contrast));
-  PetscCall(DoubleLayerAddBoxPart(w.coupling->contrast, &w.scene->fluid));
-  PetscCall(DoubleLayerPlace(w.coupling->contrast));
-  PetscCall(ApplyOffBy(w.coupling->contrast->box, &off));
+  PetscCall(DoubleLayerCreate(w.coupling->mobility->near, &ratio, &w.coupling->mobility->contrast));
+  PetscCall(DoubleLayerAddBoxPart(w.coupling->mobility->contrast, &w.scene->fluid));
+  PetscCall(DoubleLayerPlace(w.coupling->mobility->contrast));
+  PetscCall(ApplyOffBy(w.coupling->mobility->contrast->box, &off));
   CHECK(off < 1e-12, "%s: a product is that of the table's vectors but for %.1e", name, off);
   PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -104,12 +104,12 @@ static PetscErrorCode CheckSelfLayer(PetscInt n) {
                     (int)n));
   PetscCall(TestWorldCreate(options, &t));
   PetscCall(PetscMalloc3(4 * n * n, &S, 2 * n, &F, 2 * n, &U));
-  PetscCall(SelfLayer(&t.coupling->near->set, t.membrane->spectral[0], n, t.coupling->markers->X, S));
+  PetscCall(SelfLayer(&t.coupling->mobility->near->set, t.membrane->spectral[0], n, t.coupling->markers->X, S));
   for (PetscInt i = 0; i < 2 * n; i++) {
     F[i] = sin(1.0 + 0.3 * (double)i);
     U[i] = 0;
   }
-  PetscCall(NearFieldApply(t.coupling->near, 1, F, U));
+  PetscCall(NearFieldApply(t.coupling->mobility->near, 1, F, U));
   for (PetscInt i = 0; i < 2 * t.layout->n; i++) {
     PetscReal sum = 0;
     for (PetscInt j = 0; j < 2 * n; j++) sum += S[j * 2 * n + i] * F[j];
@@ -131,7 +131,7 @@ static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], 
   PetscReal *S, tau[2 * N], pull[2 * N], F[2 * N] = {0};
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * N * N, &S));
-  PetscCall(SelfLayer(&t->coupling->near->set, m->spectral[v], N, X, S));
+  PetscCall(SelfLayer(&t->coupling->mobility->near->set, m->spectral[v], N, X, S));
   MembraneVesicleTangents(m, v, X, tau);
   for (PetscInt k = 0; k < 2 * N; k++) pull[k] = sigma[k / 2] * tau[k];
   MembraneEdgesTranspose(m, v, 1, pull, F);

@@ -50,8 +50,9 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
   PetscCall(ForcingAdd(&r, q->f));
   PetscCall(TestVecs(q->V, &k, NULL));
   if (q->t.fluid->grid->free) PetscCall(TestRandomVec(16, k)); /* there a force on the grid does nothing */
-  const CoupledProblem problem = {.f = &r, .g = q->g, .k = k, .w = q->w, .p = q->p, .sigma = q->sigma, .V = q->V};
+  const CoupledProblem problem = {.known.f = &r, .g = q->g, .k = k, .sigma = q->sigma, .V = q->V};
   PetscCall(CoupledSolverSolve(q->s, &problem, &report));
+  PetscCall(MobilityFields(q->t.coupling->mobility, &r, q->w, q->p));
   CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
   q->its = report.its;
   PetscCall(ForcingDestroy(&r));

@@ -19,7 +19,8 @@ static PetscErrorCode RunCreate(const char options[], TestWorld *r) {
   PetscCall(TestScene(all, &r->scene));
   const SceneCoupling *c = &r->scene->coupling;
   const CouplingSetting setting = {
-      .kernel = c->kernel, .near = (NearFieldType)c->near_field, .area_target = area_target};
+      .mobility = {.kernel = c->kernel, .near = (NearFieldType)c->near_field, .solver = PETSC_TRUE},
+      .area_target = area_target};
   PetscCall(TestWorldBuildFor(&setting, r));
   PetscCall(TestWorldScheme(r));
   PetscFunctionReturn(PETSC_SUCCESS);

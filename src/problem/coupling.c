@@ -1,8 +1,7 @@
-#include "mobility/coupling.h"
+#include "problem/coupling.h"
 #include "bodies/bending.h"
 
-/* The own part of `from`, the vesicles', to the beginning of that of `to`, all bodies', or back. */
-static PetscErrorCode CopyVesicles(Coupling c, Vec from, Vec to) {
+PetscErrorCode CouplingCopyVesicles(Coupling c, Vec from, Vec to) {
   const PetscScalar *a;
   PetscScalar *b;
   PetscFunctionBeginUser;
@@ -29,7 +28,7 @@ static PetscErrorCode PlaceObstacles(Coupling c, PetscReal t) {
 
 PetscErrorCode CouplingPlaceMarkers(Coupling c, Vec X) {
   PetscFunctionBeginUser;
-  PetscCall(CopyVesicles(c, X, c->X));
+  PetscCall(CouplingCopyVesicles(c, X, c->X));
   PetscCall(MarkersPlace(c->markers, c->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -37,7 +36,7 @@ PetscErrorCode CouplingPlaceMarkers(Coupling c, Vec X) {
 PetscErrorCode CouplingInterpolate(Coupling c, Vec w, Vec U) {
   PetscFunctionBeginUser;
   PetscCall(MarkersInterpolate(c->markers, w, c->velocity));
-  PetscCall(CopyVesicles(c, c->velocity, U));
+  PetscCall(CouplingCopyVesicles(c, c->velocity, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -47,17 +46,17 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   PetscFunctionBeginUser;
   message[0] = 0;
   for (PetscInt v = 0; v < c->membrane->layout->bodies; v++) c->treading[v] = treading ? treading[v] : 0;
-  PetscCall(FluidSetTimeCoefficient(c->fluid, a0));
+  if (CouplingHasBodies(c)) {
+    PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
+    if (*message) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(PlaceObstacles(c, t));
+    PetscCall(CouplingCopyVesicles(c, X, c->X));
+  }
+  PetscCall(MobilityPlace(c->mobility, a0, c->X));
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
-  if (*message) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PlaceObstacles(c, t));
-  PetscCall(CouplingPlaceMarkers(c, X));
   PetscCall(VecGetArrayRead(X, &x));
   MembraneTangents(c->membrane, x, c->tau);
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (c->near) PetscCall(NearFieldPlace(c->near));
-  if (c->contrast) PetscCall(DoubleLayerPlace(c->contrast));
   PetscCall(ForcesPlace(c->forces, t, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -110,24 +109,6 @@ PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
   PetscCall(VecRestoreArray(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecRestoreArrayRead(Y, &y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingSpreadForce(Coupling c, Vec F, Forcing *f) {
-  const Grid g = c->fluid->grid;
-  PetscFunctionBeginUser;
-  PetscCall(ForcingSpread(f, c->markers, -1 / PetscSqr(g->h), F));
-  if (ForcesReach(c->forces) == FORCE_OUTSIDE && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(f, c->fluid));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingNearField(Coupling c, PetscReal alpha, Vec F, PetscScalar u[]) {
-  const PetscScalar *f;
-  PetscFunctionBeginUser;
-  if (!c->near || !F) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(F, &f));
-  PetscCall(NearFieldApply(c->near, alpha, f, u));
-  PetscCall(VecRestoreArrayRead(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,21 +188,6 @@ static PetscErrorCode CreateShell(Coupling c, int each, ShellMult mult, ShellMul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The markers' velocities beside the grid's: near field, double layer, lag. */
-static PetscErrorCode CreateLayers(Coupling c, const CouplingSetting *setting) {
-  const Kernel *k = c->markers->kernel;
-  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
-  PetscFunctionBeginUser;
-  if (setting->near != NEAR_EXACT || !CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NearFieldCreate(c->markers, c->bodies, c->fluid->nu, &c->near));
-  if (setting->box_part) PetscCall(NearFieldAddBoxPart(c->near, setting->spec));
-  if (setting->lag) c->lag = cells * PetscSqr(c->fluid->grid->h) / c->fluid->nu;
-  if (!setting->ratio) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DoubleLayerCreate(c->near, setting->ratio, &c->contrast));
-  if (setting->box_part) PetscCall(DoubleLayerAddBoxPart(c->contrast, setting->spec));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, const CouplingSetting *setting,
                               Coupling *out) {
   Coupling c;
@@ -231,7 +197,8 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   c->fluid = fluid;
   c->membrane = m;
   PetscCall(BodiesCreate(m, obstacles, &c->bodies));
-  PetscCall(MarkersCreate(fluid->grid, c->bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &c->markers));
+  PetscCall(MobilityCreate(fluid, c->bodies, &setting->mobility, &c->mobility));
+  c->markers = c->mobility->markers;
   PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
@@ -240,17 +207,8 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
-  PetscCall(CreateLayers(c, setting));
   PetscCall(ForcesCreate(c->bodies, fluid->grid, setting->scene, &c->forces));
-  if (setting->area_target) PetscCall(AreaRowCreate(m, c->contrast ? c->contrast->ratio : NULL, &c->area));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CouplingAddPast(Coupling c, Vec uhat, Vec U) {
-  PetscFunctionBeginUser;
-  if (c->lag == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MarkersInterpolate(c->markers, uhat, c->velocity));
-  PetscCall(VecAXPY(U, CouplingLag(c, c->fluid->alpha), c->velocity));
+  if (setting->area_target) PetscCall(AreaRowCreate(m, setting->mobility.ratio, &c->area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,9 +239,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AreaRowDestroy(&c->area));
   PetscCall(ForcesDestroy(&c->forces));
-  PetscCall(DoubleLayerDestroy(&c->contrast));
-  PetscCall(NearFieldDestroy(&c->near));
-  PetscCall(MarkersDestroy(&c->markers));
+  PetscCall(MobilityDestroy(&c->mobility));
   PetscCall(BodiesDestroy(&c->bodies));
   PetscCall(PetscFree(c->tau));
   PetscCall(PetscFree(c->treading));

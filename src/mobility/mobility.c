@@ -1,0 +1,216 @@
+#include "mobility/mobility.h"
+#include "markers/streamresponse.h"
+
+/* The markers' velocities beside the grid's: near field, double layer, lag. */
+static PetscErrorCode CreateLayers(Mobility m, const MobilitySetting *setting) {
+  const Kernel *k = m->markers->kernel;
+  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
+  PetscFunctionBeginUser;
+  if (setting->near != NEAR_EXACT || !m->bodies->layout->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NearFieldCreate(m->markers, m->bodies, m->fluid->nu, &m->near));
+  if (setting->box_part) PetscCall(NearFieldAddBoxPart(m->near, setting->spec));
+  if (setting->lag) m->lag = cells * PetscSqr(m->fluid->grid->h) / m->fluid->nu;
+  if (!setting->ratio) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DoubleLayerCreate(m->near, setting->ratio, &m->contrast));
+  if (setting->box_part) PetscCall(DoubleLayerAddBoxPart(m->contrast, setting->spec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateSolver(Mobility m) {
+  PetscFunctionBeginUser;
+  PetscCall(LayoutCreateVec(m->bodies->layout, 2, &m->F));
+  if (m->contrast) PetscCall(LayoutCreateVec(m->bodies->membrane->layout, 2, &m->G));
+  if (m->fluid->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StokesCreate(m->fluid, &m->stokes));
+  m->stream = StokesStream(m->stokes);
+  if (m->contrast) PetscCall(DipoleRowsCreate(m->fluid->grid, m->fluid->nu, &m->dipoles));
+  if (!m->fluid->steady) PetscCall(VecDuplicate(m->F, &m->flow));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityCreate(Fluid fluid, Bodies bodies, const MobilitySetting *setting, Mobility *out) {
+  Mobility m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *out = m;
+  m->fluid = fluid;
+  m->bodies = bodies;
+  PetscCall(MarkersCreate(fluid->grid, bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &m->markers));
+  PetscCall(CreateLayers(m, setting));
+  if (setting->solver) PetscCall(CreateSolver(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityDestroy(Mobility *mobility) {
+  Mobility m = *mobility;
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DipoleRowsDestroy(&m->dipoles));
+  PetscCall(StokesDestroy(&m->stokes));
+  PetscCall(DoubleLayerDestroy(&m->contrast));
+  PetscCall(NearFieldDestroy(&m->near));
+  PetscCall(MarkersDestroy(&m->markers));
+  PetscCall(VecDestroy(&m->F));
+  PetscCall(VecDestroy(&m->G));
+  PetscCall(VecDestroy(&m->flow));
+  PetscCall(PetscFree(*mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityPlace(Mobility m, PetscReal a0, Vec X) {
+  PetscFunctionBeginUser;
+  PetscCall(FluidSetTimeCoefficient(m->fluid, a0));
+  if (!m->bodies->layout->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MarkersPlace(m->markers, X));
+  if (m->near) PetscCall(NearFieldPlace(m->near));
+  if (m->contrast) PetscCall(DoubleLayerPlace(m->contrast));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityAddLayers(Mobility m, Vec F, Vec G, PetscScalar U[]) {
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (m->near && F) {
+    PetscCall(VecGetArrayRead(F, &a));
+    PetscCall(NearFieldApply(m->near, -1, a, U));
+    PetscCall(VecRestoreArrayRead(F, &a));
+  }
+  if (m->contrast && G) {
+    PetscCall(VecGetArrayRead(G, &a));
+    PetscCall(DoubleLayerApply(m->contrast, 1, a, U));
+    PetscCall(VecRestoreArrayRead(G, &a));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The dipoles of the motion G as rows of the stream, with their force where the forcing has not got it. */
+static PetscErrorCode MobilitySetDipoles(Mobility m, Vec G, PetscBool own) {
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (!m->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(G, &a));
+  PetscCall(DoubleLayerRows(m->contrast, a, own, StokesProfile(m->stokes), m->dipoles));
+  PetscCall(VecRestoreArrayRead(G, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U += what the grid does not give. */
+static PetscErrorCode MobilityFinish(Mobility m, Vec F, Vec G, Vec U) {
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(U, &u));
+  PetscCall(MobilityAddLayers(m, F, G, u));
+  PetscCall(VecRestoreArray(U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityApply(Mobility m, Vec F, Vec G, Vec U) {
+  PetscFunctionBeginUser;
+  if (m->stokes) {
+    PetscCall(MobilitySetDipoles(m, G, PETSC_TRUE));
+    PetscCall(MarkersRespond(m->markers, m->stream, m->dipoles, -1 / PetscSqr(m->fluid->grid->h), F, U));
+    PetscCall(VecScale(U, MobilityGridPart(m, m->fluid->alpha)));
+  } else
+    PetscCall(VecSet(U, 0));
+  PetscCall(MobilityFinish(m, F, G, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityBegin(Mobility m, const MobilityKnown *q) {
+  const Grid g = m->fluid->grid;
+  PetscFunctionBeginUser;
+  m->known = q;
+  m->added = 0;
+  m->measures = (StreamMeasures){0};
+  PetscCall(q->F ? VecCopy(q->F, m->F) : VecSet(m->F, 0));
+  if (m->contrast) PetscCall(q->G ? VecCopy(q->G, m->G) : VecSet(m->G, 0));
+  if (!q->F || g->free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForcingSpread(q->f, m->markers, -1 / PetscSqr(g->h), q->F));
+  if (q->outside && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(q->f, m->fluid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U = E u of the whole forcing of the step, whose dipoles have been spread. */
+static PetscErrorCode MobilityFollow(Mobility m, Vec U) {
+  PetscFunctionBeginUser;
+  PetscCall(MobilitySetDipoles(m, m->G, PETSC_FALSE));
+  PetscCall(MarkersFollow(m->markers, m->stream, m->dipoles, m->known->f, NULL, U, &m->measures));
+  PetscCall(VecScale(U, MobilityGridPart(m, m->fluid->alpha)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In fluid with inertia: the flow of the step gets that of the states before and of all forces (the first time) or that
+   of the forces F; U = E u. What is measured is then a sum; that of divergences is a bound. */
+static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
+  const MobilityKnown *q = m->known;
+  StreamMeasures more;
+  PetscFunctionBeginUser;
+  if (m->added == 1)
+    PetscCall(MarkersFollow(m->markers, m->stream, NULL, q->f, q->past, m->flow, &m->measures));
+  else {
+    PetscCall(MarkersAddFlow(m->markers, m->stream, -1 / PetscSqr(m->fluid->grid->h), F, U, q->past->made, &more));
+    PetscCall(VecAXPY(m->flow, MobilityGridPart(m, m->fluid->alpha), U));
+    m->measures.divergence += more.divergence;
+    m->measures.slip += more.slip;
+    m->measures.pressure += more.pressure;
+  }
+  PetscCall(VecCopy(m->flow, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces F and the dipoles of the motion G join the forcing of the step. */
+static PetscErrorCode MobilitySpread(Mobility m, Vec F, Vec G) {
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(ForcingSpread(m->known->f, m->markers, -1 / PetscSqr(m->fluid->grid->h), F));
+  if (!m->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(G, &a));
+  PetscCall(DoubleLayerSpread(m->contrast, a, m->known->f));
+  PetscCall(VecRestoreArrayRead(G, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityAdd(Mobility m, Vec F, Vec G, Vec U) {
+  PetscFunctionBeginUser;
+  m->added++;
+  PetscCall(VecAXPY(m->F, 1, F));
+  if (m->contrast) PetscCall(VecAXPY(m->G, 1, G));
+  if (m->stokes) {
+    PetscCall(MobilitySpread(m, F, m->added == 1 ? m->G : G)); /* the first time with what is known of the motion */
+    PetscCall(m->known->past ? MobilityFollowFlow(m, F, U) : MobilityFollow(m, U));
+  } else
+    PetscCall(VecSet(U, 0));
+  PetscCall(MobilityFinish(m, m->F, m->G, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In a box that is periodic both ways, and in a channel without flux, the solve leaves u without a mean, which dipoles
+   have. */
+static PetscErrorCode AddMean(Mobility m, const PetscReal mean[2], Vec u) {
+  const Grid g = m->fluid->grid;
+  const PetscReal *profile = StokesProfile(m->stokes);
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  if (!m->contrast || g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(u, &a));
+  for (int f = FIELD_U; f <= (g->wall[1] ? FIELD_U : FIELD_V); f++)
+    for (PetscInt j = 0; j < g->rows[f]; j++)
+      for (PetscInt i = 0; i < g->n[0]; i++)
+        a[GridRowStart(g, (Field)f, j) + i] += mean[f] * (profile ? profile[g->first + j] : 1);
+  PetscCall(VecRestoreArray(u, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
+  PetscFunctionBeginUser;
+  if (!m->stokes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StokesSolve(m->stokes, f->values, f->source, u, p));
+  PetscCall(AddMean(m, f->mean, u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MobilityPressure(Mobility m, const Forcing *f, Vec u, Vec p) {
+  PetscFunctionBeginUser;
+  PetscCall(StokesPressure(m->stokes, f->values, u, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
