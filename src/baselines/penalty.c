@@ -14,14 +14,15 @@ typedef struct {
 
 /* sigma = sigma_0 (|X_s| - 1) at the markers X; force may be NULL */
 static PetscErrorCode SpringTension(Scheme s, Penalty *d, Vec X, Vec sigma, Vec force) {
+  const Layout l = s->membrane->layout;
   const PetscScalar *x;
   PetscScalar *tension, *f = NULL;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArray(sigma, &tension));
   if (force) PetscCall(VecGetArray(force, &f));
-  MembraneTangents(s->membrane, x, d->tau);
-  for (PetscInt k = 0; k < s->membrane->layout->n; k++) {
+  MembraneTangents(s->membrane, l->own, l->end, x, d->tau);
+  for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal stretch = PetscSqrtReal(PetscSqr(d->tau[2 * k]) + PetscSqr(d->tau[2 * k + 1])); /* |X_s| */
     tension[k] = s->scene->scheme.stiffness * (stretch - 1);
     if (f) f[k] = tension[k] / stretch;

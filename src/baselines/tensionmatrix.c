@@ -26,11 +26,10 @@ static PetscErrorCode PlaceWindows(Coupling c, Windows *w) {
   const PetscInt M = l->M;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(2 * M, &w->origin, M, &w->previous, 2 * M, &w->tau));
-  for (PetscInt v = 0; v < l->bodies; v++) {
-    MembraneVesicleTangents(c->membrane, v, c->markers->X + 2 * l->start[v], w->tau + 2 * l->start[v]);
+  MembraneTangents(c->membrane, 0, l->bodies, c->markers->X, w->tau);
+  for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
       w->previous[k] = (k > l->start[v] ? k : l->start[v + 1]) - 1;
-  }
   w->n[0] = w->n[1] = 0;
   for (PetscInt k = 0; k < M; k++)
     for (int dir = 0; dir < 2; dir++) {

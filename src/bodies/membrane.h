@@ -42,33 +42,18 @@ PETSC_EXTERN void MembraneEdges(Membrane membrane, PetscInt vesicle, const Petsc
 PETSC_EXTERN void MembraneEdgesTranspose(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscScalar F[],
                                          PetscScalar Y[]);
 
-/* MembraneVesicleTangents - tau = e/ds of one vesicle. MembraneTangents - tau of all own vesicles. */
-PETSC_EXTERN void MembraneVesicleTangents(Membrane membrane, PetscInt vesicle, const PetscScalar X[], PetscReal tau[]);
-PETSC_EXTERN void MembraneTangents(Membrane membrane, const PetscScalar X[], PetscReal tau[]);
-
-/* MembraneVesicleStretching - the stretching rate of the edges times ds of one vesicle, d = Dm U:
-
-     d_k = tau_k . (D U)_k.
-
-   MembraneStretching - d of all own vesicles. MembraneStretchingTranspose - F += alpha Dm^T sigma of all own vesicles.
- */
-PETSC_EXTERN void MembraneVesicleStretching(Membrane membrane, PetscInt vesicle, const PetscReal tau[],
-                                            const PetscScalar U[], PetscScalar d[]);
-PETSC_EXTERN void MembraneStretching(Membrane membrane, const PetscReal tau[], const PetscScalar U[], PetscScalar d[]);
-PETSC_EXTERN void MembraneStretchingTranspose(Membrane membrane, const PetscReal tau[], PetscReal alpha,
-                                              const PetscScalar sigma[], PetscScalar F[]);
+/* MembraneTangents - tau = e/ds of the vesicles vesicle .. end - 1, whose markers X are. */
+PETSC_EXTERN void MembraneTangents(Membrane membrane, PetscInt vesicle, PetscInt end, const PetscScalar X[],
+                                   PetscReal tau[]);
 
 /* MembraneVesiclePull - minus the force of a given tension[n] (length^3/time^2) of one vesicle, linear in the markers
    X:
 
      F += alpha D^T (tension D X)/ds.
 
-   The matrix is symmetric, and without negative eigenvalue where the tension is nowhere negative. MembranePull - F of
-   all own vesicles. */
+   The matrix is symmetric, and without negative eigenvalue where the tension is nowhere negative. */
 PETSC_EXTERN void MembraneVesiclePull(Membrane membrane, PetscInt vesicle, PetscReal alpha, const PetscReal tension[],
                                       const PetscScalar X[], PetscScalar F[]);
-PETSC_EXTERN void MembranePull(Membrane membrane, PetscReal alpha, const PetscReal tension[], const PetscScalar X[],
-                               PetscScalar F[]);
 
 /* Measures of one vesicle. */
 typedef struct {

@@ -38,10 +38,17 @@ static PetscErrorCode TurningPlace(void *context, PetscReal time, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Most vesicles have no tension that turns. */
 static PetscErrorCode TurningRate(void *context, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
   const Turning *t = (const Turning *)context;
+  const Layout l = t->membrane->layout;
   PetscFunctionBeginUser;
-  MembranePull(t->membrane, alpha, t->tension, V, F);
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = LayoutOffset(l, v);
+    PetscInt k = 0;
+    while (k < LayoutCount(l, v) && t->tension[at + k] == 0) k++;
+    if (k < LayoutCount(l, v)) MembraneVesiclePull(t->membrane, v, alpha, t->tension + at, V + 2 * at, F + 2 * at);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

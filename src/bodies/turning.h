@@ -1,7 +1,7 @@
 /* The pull of a tension that turns with the edges (docs/membrane.md, The tension turns with the membrane). With the
    expected tension sigma >= 0 of the new time, which is zero where the force has just been placed, minus the force is
 
-       K_sigma X - K_sigma X*,      K_sigma = MembranePull,
+       K_sigma X - K_sigma X*,      K_sigma = MembraneVesiclePull,
 
    where K_sigma X* = Dm^T sigma is what the solved tension gives along the edges of X*. */
 #pragma once

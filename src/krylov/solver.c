@@ -148,18 +148,15 @@ static PetscErrorCode FreeReference(CoupledSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The square of the norm of k of the own obstacles with its factors. */
-static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q, PetscReal *sum) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  PetscScalar *a, *solid;
+/* k of the own obstacles, data[2w]. */
+static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q, PetscScalar data[]) {
+  PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->coupling->bodies->obstacles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(q->k, s->reduced->U));
   PetscCall(VecGetArray(s->reduced->U, &a));
-  solid = a + s->unknowns->velocity;
   PetscCall(MobilityAddLayers(s->coupling->mobility, q->known.F, NULL, a));
-  ObstaclesScale(o, UnknownsWeight(s->unknowns), PETSC_FALSE, solid);
-  for (PetscInt i = 0; i < s->unknowns->solid; i++) *sum += PetscSqr(solid[i]);
+  PetscCall(PetscArraycpy(data, a + s->unknowns->velocity, s->unknowns->solid));
   PetscCall(VecRestoreArray(s->reduced->U, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -167,22 +164,20 @@ static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q
 /* Norm of f, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
    before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
-  const Layout l = s->coupling->membrane->layout;
   const Forcing *f = q->known.f;
-  const PetscScalar *a;
-  const PetscReal l2 = PetscSqr(s->unknowns->length);
-  PetscReal sum = 0, squares = 0;
+  PetscScalar *a;
+  PetscReal squares = 0, norm;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(q->g, &a));
-  for (PetscInt v = l->own; v < l->end; v++)
-    for (PetscInt k = 0; k < LayoutCount(l, v); k++)
-      sum += PetscSqr(a[LayoutOffset(l, v) + k] * UnknownsTensionScale(s->unknowns, v));
-  PetscCall(VecRestoreArrayRead(q->g, &a));
-  PetscCall(ObstacleReference(s, q, &sum));
+  PetscCall(VecSet(s->change, 0));
+  PetscCall(UnknownsPack(s->unknowns, NULL, NULL, q->g, s->change));
+  PetscCall(VecGetArray(s->change, &a));
+  PetscCall(ObstacleReference(s, q, a + s->unknowns->velocity));
+  UnknownsScale(s->unknowns, PETSC_FALSE, a);
+  PetscCall(VecRestoreArray(s->change, &a));
+  PetscCall(VecNorm(s->change, NORM_2, &norm));
   PetscCall(GridAddSquares(f->grid, f->everywhere ? NULL : &f->window, f->values, &squares));
-  sum += l2 * squares;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, l->comm));
-  s->reference = PetscSqrtReal(sum);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPIU_REAL, MPI_SUM, f->grid->comm));
+  s->reference = PetscSqrtReal(PetscSqr(norm) + PetscSqr(s->unknowns->length) * squares);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

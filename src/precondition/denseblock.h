@@ -1,36 +1,33 @@
 /* The dense problem of one or several vesicles inside the coupled preconditioner (docs/solver.md, Preconditioner).
 
-   M is the vesicles' mobility times h^2, v the speed of their labels, Dm the stretching of edges and K the part of the
-   forces' rate that a force has for one vesicle alone (ForcesDense). With
-       N = I + (v/a0) d/dt + M K/(h^2 a0),      C = Dm N^-1 M Dm^T/h^4,
-   velocity and tension follow from right-hand sides U and r_s by the Schur complement C:
-       U1 = N^-1 U,      sigma = C^-1 (Dm U1/h^2 - r_s),      U3 = U1 - N^-1 M Dm^T sigma/h^2.
+   M is the vesicles' mobility times h^2, v the speed of their labels, D the rows of the membranes' law (LawBlock) and K
+   the part of the forces' rate that a force has for one vesicle alone (ForcesDense). With
+       N = I + (v/a0) d/dt + M K/(h^2 a0),      C = D N^-1 M D^T,
+   velocity and the law's unknowns sigma follow from right-hand sides U and r_s by the Schur complement C:
+       U1 = N^-1 U,      sigma = C^-1 (D U1 - r_s),      U3 = U1 - N^-1 M D^T sigma.
    N and C are factored once for many solves. All is local to one rank. */
 #pragma once
 #include "bodies/force.h"
+#include "bodies/law.h"
 #include <petscblaslapack.h>
 
 typedef struct {
-  Membrane membrane;     /* borrowed */
-  Forces forces;         /* borrowed */
-  PetscReal h2;          /* h^2 of the grid's cells */
-  PetscInt vesicle, end; /* its vesicles: vesicle .. end - 1 */
-  PetscInt first, n;     /* its markers */
-  PetscReal *N, *C;      /* LU factors of N (2n x 2n) and C (n x n) */
-  PetscReal *K;          /* N^-1 M Dm^T/h^2, (2n x n), columns contiguous */
-  PetscReal *tau;        /* [2n] tangents */
-  PetscReal *d;          /* [n] work */
+  MembraneLaw law;  /* of its vesicles and their n markers */
+  Forces forces;    /* borrowed */
+  PetscReal *N, *C; /* LU factors of N (2n x 2n) and C (n x n) */
+  PetscReal *K;     /* N^-1 M D^T, (2n x n), columns contiguous */
+  PetscReal *d;     /* [n] work */
   PetscBLASInt *pivot_N, *pivot_C;
 } DenseBlock;
 
-/* DenseBlockCreate - for vesicles vesicle .. end - 1 on a grid of cells h, tangents not set. Not collective. */
+/* DenseBlockCreate - for vesicles vesicle .. end - 1 on a grid of cells h, its law not placed. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockCreate(Membrane membrane, Forces forces, PetscReal h, PetscInt vesicle,
                                              PetscInt end, DenseBlock *block);
 PETSC_EXTERN PetscErrorCode DenseBlockDestroy(DenseBlock *block);
 
-/* DenseBlockFactor - N and C for M = Mob[2n][2n], symmetric, the block's tangents, a0 and its vesicles' label speeds
-   treading[]. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T (ContrastMatrix), else
-   NULL. factored is false when a matrix is singular. Not collective. */
+/* DenseBlockFactor - N and C for M = Mob[2n][2n], symmetric, its law where it is placed, a0 and its vesicles' label
+   speeds treading[]. motion: with viscosity contrast what stands in the place of (I + (v/a0) d/dt)^T (ContrastMatrix),
+   else NULL. factored is false when a matrix is singular. Not collective. */
 PETSC_EXTERN PetscErrorCode DenseBlockFactor(DenseBlock *block, PetscReal a0, const PetscReal treading[],
                                              const PetscReal Mob[], const PetscReal motion[], PetscBool *factored);
 

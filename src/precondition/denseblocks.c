@@ -39,8 +39,9 @@ PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
     BlockFrame *f = &b->frame[k];
     PetscCall(DenseBlockCreate(coupling->membrane, coupling->forces, coupling->fluid->grid->h, v,
                                b->together ? l->bodies : v + 1, &b->block[k]));
-    f->turns = b->block[k].end - v == 1 && !(b->together && coupling->bodies->obstacles) ? PETSC_TRUE : PETSC_FALSE;
-    const PetscInt n = f->turns ? b->block[k].n : 0;
+    f->turns = b->block[k].law->end - v == 1 && !(b->together && coupling->bodies->obstacles) ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
+    const PetscInt n = f->turns ? b->block[k].law->n : 0;
     PetscCall(PetscMalloc3(2 * n, &f->X, 2 * n, &f->U, n, &f->sigma));
   }
   PetscCall(PetscMalloc2(2 * l->M, &b->U, l->M, &b->sigma));
@@ -78,42 +79,36 @@ static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tangents of the present markers in block k's frame. */
-static void PlaceTangents(DenseBlocks b, PetscInt k) {
-  const Membrane m = b->coupling->membrane;
-  const DenseBlock *q = &b->block[k];
+/* The law of block k, placed at the present markers in the block's frame. */
+static void PlaceLaw(DenseBlocks b, PetscInt k) {
+  const MembraneLaw law = b->block[k].law;
   const BlockFrame *f = &b->frame[k];
-  const PetscReal *X = b->coupling->markers->X + 2 * q->first;
-  if (f->turns && f->made) {
-    RigidFitInto(&f->fit, 2, q->n, X, f->U);
-    X = f->U;
-  }
-  for (PetscInt v = q->vesicle; v < q->end; v++) {
-    const PetscInt at = 2 * (m->layout->start[v] - q->first);
-    MembraneVesicleTangents(m, v, X + at, q->tau + at);
-  }
+  const PetscReal *X = b->coupling->markers->X + 2 * law->first;
+  if (f->turns && f->made) RigidFitInto(&f->fit, 2, law->n, X, f->U);
+  LawPlace(law, f->turns && f->made ? f->U : X);
 }
 
 void DenseBlocksPlace(DenseBlocks b) {
   for (PetscInt k = 0; k < b->count; k++) {
-    const DenseBlock *q = &b->block[k];
+    const MembraneLaw law = b->block[k].law;
     BlockFrame *f = &b->frame[k];
     if (f->turns && f->made) {
-      RigidFitCentre(q->n, b->coupling->markers->X + 2 * q->first, f->U);
-      f->fit = RigidFitCurves(q->n, f->U, f->X);
+      RigidFitCentre(law->n, b->coupling->markers->X + 2 * law->first, f->U);
+      f->fit = RigidFitCurves(law->n, f->U, f->X);
     }
-    PlaceTangents(b, k);
+    PlaceLaw(b, k);
   }
 }
 
 /* The frames of blocks made for the present markers. */
 static void BeginFrames(DenseBlocks b) {
   for (PetscInt k = 0; k < b->count; k++) {
+    const MembraneLaw law = b->block[k].law;
     BlockFrame *f = &b->frame[k];
     f->made = PETSC_TRUE;
     f->fit = (RigidFit){.turn = {1, 0}};
-    if (f->turns) RigidFitCentre(b->block[k].n, b->coupling->markers->X + 2 * b->block[k].first, f->X);
-    PlaceTangents(b, k);
+    if (f->turns) RigidFitCentre(law->n, b->coupling->markers->X + 2 * law->first, f->X);
+    PlaceLaw(b, k);
   }
 }
 
@@ -130,7 +125,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
   PetscCall(PetvesEvent("FactorMobility", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   BeginFrames(b);
-  for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].n);
+  for (PetscInt k = 0; k < b->count; k++) most = PetscMax(most, b->block[k].law->n);
   PetscCall(PetscMalloc1(4 * most * most, &Mob));
   if (b->together) {
     PetscCall(MeanMobilityOnRoot(mobility, &all, &all, b->root, Mob));
@@ -139,16 +134,16 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
     PetscCall(AssembleMotion(b, a0, 0, m->layout->M, &motion));
   }
   for (PetscInt k = 0; k < b->count && good; k++) {
-    DenseBlock *q = &b->block[k];
+    const MembraneLaw law = b->block[k].law;
     if (!b->together) {
-      const MarkerRange own = {q->first, q->n};
+      const MarkerRange own = {law->first, law->n};
       PetscCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->mobility->near)
-        PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, q->first, q->n, Mob));
-      PetscCall(AssembleMotion(b, a0, q->first, q->n, &motion));
+        PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, law->first, law->n, Mob));
+      PetscCall(AssembleMotion(b, a0, law->first, law->n, &motion));
     }
-    PetscCall(DenseBlockFactor(q, a0, b->coupling->treading + q->vesicle, Mob, motion, &good));
+    PetscCall(DenseBlockFactor(&b->block[k], a0, b->coupling->treading + law->vesicle, Mob, motion, &good));
     if (!b->together) PetscCall(PetscFree(motion));
   }
   PetscCall(PetscFree(motion));
@@ -162,17 +157,18 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
 /* Block k's problem, in its frame. */
 static PetscErrorCode SolveBlock(DenseBlocks b, PetscInt k, PetscScalar U[], PetscScalar sigma[]) {
   const DenseBlock *q = &b->block[k];
+  const PetscInt n = q->law->n;
   BlockFrame *f = &b->frame[k];
   PetscFunctionBeginUser;
   if (!f->turns) {
     PetscCall(DenseBlockSolve(q, 1, U, sigma));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  RigidFitInto(&f->fit, 2, q->n, U, f->U);
-  RigidFitInto(&f->fit, 1, q->n, sigma, f->sigma);
+  RigidFitInto(&f->fit, 2, n, U, f->U);
+  RigidFitInto(&f->fit, 1, n, sigma, f->sigma);
   PetscCall(DenseBlockSolve(q, 1, f->U, f->sigma));
-  RigidFitBack(&f->fit, 2, q->n, f->U, U);
-  RigidFitBack(&f->fit, 1, q->n, f->sigma, sigma);
+  RigidFitBack(&f->fit, 2, n, f->U, U);
+  RigidFitBack(&f->fit, 1, n, f->sigma, sigma);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,7 +184,7 @@ PetscErrorCode DenseBlocksSolve(DenseBlocks b, PetscScalar U[], PetscScalar sigm
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt k = 0; k < b->count; k++) {
-    const PetscInt at = b->block[k].first - l->first;
+    const PetscInt at = b->block[k].law->first - l->first;
     PetscCall(SolveBlock(b, k, U + 2 * at, sigma + at));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

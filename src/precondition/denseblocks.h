@@ -17,9 +17,9 @@ typedef struct _p_DenseBlocks *DenseBlocks;
 PETSC_EXTERN PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *blocks);
 PETSC_EXTERN PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks);
 
-/* DenseBlocksPlace - follow the coupling's new markers: Dm is that of their tangents, also where N and C are older. A
-   block of one vesicle, which knows no obstacles, is turned, and its labels shifted, as the vesicle has been since the
-   block was made. Not collective. */
+/* DenseBlocksPlace - follow the coupling's new markers: the membranes' law is placed there, also where N and C are
+   older. A block of one vesicle, which knows no obstacles, is turned, and its labels shifted, as the vesicle has been
+   since the block was made. Not collective. */
 PETSC_EXTERN void DenseBlocksPlace(DenseBlocks blocks);
 
 /* DenseBlocksFactor - assemble Mob at the coupling's markers, factor N and

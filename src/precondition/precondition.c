@@ -154,7 +154,7 @@ static PetscErrorCode SolveObstacles(Preconditioner p, PetscScalar V[], const Pe
   if (ObstacleBlockCoupled(p->solid)) {
     PetscCall(PetscArrayzero(p->force, p->unknowns->velocity));
     PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, V, p->force));
-    MembraneStretchingTranspose(c->membrane, c->tau, 1, sigma, p->force);
+    LawForce(c->law, 1, sigma, p->force);
   }
   PetscCall(ObstacleBlockEnd(p->solid, p->force, V + p->unknowns->velocity));
   PetscFunctionReturn(PETSC_SUCCESS);

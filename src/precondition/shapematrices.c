@@ -47,22 +47,19 @@ static PetscErrorCode FindShapeWeights(SharedShapes s, PetscInt n, PetscInt poin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F = Dm^T sigma + K V of an answer (V, sigma), K[2n][2n], and behind it J = (1 - ratio) (V + (treading/a0) dV/dt).
- */
-static PetscErrorCode AnswerSources(SharedShapes s, const SharedShape *q, const PetscReal tau[], const PetscReal K[],
+/* F = D^T sigma + K V of an answer (V, sigma), D^T sigma by its law, K[2n][2n], and behind F
+   J = (1 - ratio) (V + (treading/a0) dV/dt). */
+static PetscErrorCode AnswerSources(SharedShapes s, const SharedShape *q, MembraneLaw law, const PetscReal K[],
                                     const PetscReal V[], PetscReal F[]) {
-  const Membrane m = s->coupling->membrane;
-  const PetscInt n = LayoutCount(m->layout, q->like);
-  PetscReal *pull = s->X;
+  const PetscInt n = law->n;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < 2 * n; k++) pull[k] = V[2 * n + k / 2] * tau[k];
   (void)PetscArrayzero(F, 2 * n);
-  MembraneEdgesTranspose(m, q->like, 1, pull, F);
+  LawForce(law, 1, V + 2 * n, F);
   PetscCall(DenseMultAdd(PETSC_FALSE, 2 * n, 2 * n, 1, K, V, F));
   if (q->sources.rows == 2 * n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscReal *J = F + 2 * n;
   (void)PetscArraycpy(J, V, 2 * n);
-  MembraneLabelDerivative(m, q->like, q->treading / s->a0, V, J);
+  MembraneLabelDerivative(law->membrane, q->like, q->treading / s->a0, V, J);
   for (PetscInt k = 0; k < 2 * n; k++) J[k] *= 1 - s->coupling->mobility->contrast->ratio[q->like];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,9 +85,9 @@ static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
 }
 
 /* The inverse and its sources: the columns are the answers V, sigma to those of the identity. */
-static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, const PetscReal tau[], const PetscReal V[],
+static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, MembraneLaw law, const PetscReal V[],
                                  const PetscReal sigma[]) {
-  const PetscInt n = LayoutCount(s->coupling->membrane->layout, q->like), all = 3 * n;
+  const PetscInt n = law->n, all = 3 * n;
   PetscReal *answer, *F, *K;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(all, &answer, q->sources.rows, &F));
@@ -101,7 +98,7 @@ static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, const PetscReal
   for (PetscInt j = 0; j < all; j++) {
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
-    PetscCall(AnswerSources(s, q, tau, K, answer, F));
+    PetscCall(AnswerSources(s, q, law, K, answer, F));
     PackedMatrixSetColumn(&q->inverse, j, answer);
     PackedMatrixSetColumn(&q->sources, j, F);
   }
@@ -121,13 +118,13 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
   PetscCall(AssembleShape(s, q, M));
   PetscCall(ShapeMotion(s, q, &motion));
-  MembraneVesicleTangents(m, q->like, q->X, block.tau);
+  LawPlace(block.law, q->X);
   PetscCall(DenseBlockFactor(&block, s->a0, &q->treading, M, motion, good));
   PetscCall(PetscFree(motion));
   for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
   if (*good) PetscCall(DenseBlockSolve(&block, all, V, sigma));
-  PetscCall(StoreShape(s, q, block.tau, V, sigma));
+  PetscCall(StoreShape(s, q, block.law, V, sigma));
   if (s->coarse) PetscCall(MakeShapePoints(s, q));
   PetscCall(DenseBlockDestroy(&block));
   PetscCall(PetscFree(M));

@@ -55,7 +55,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   PetscCall(MobilityPlace(c->mobility, a0, c->X));
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(X, &x));
-  MembraneTangents(c->membrane, x, c->tau);
+  LawPlace(c->law, x);
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(ForcesPlace(c->forces, t, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -68,7 +68,7 @@ PetscErrorCode CouplingSpreadTension(Coupling c, PetscReal alpha, Vec sigma, Vec
   PetscCall(VecSet(c->force, 0));
   PetscCall(VecGetArrayRead(sigma, &s));
   PetscCall(VecGetArray(c->force, &F));
-  MembraneStretchingTranspose(c->membrane, c->tau, 1 / PetscSqr(c->fluid->grid->h), s, F);
+  LawForce(c->law, 1 / PetscSqr(c->fluid->grid->h), s, F);
   PetscCall(VecRestoreArray(c->force, &F));
   PetscCall(VecRestoreArrayRead(sigma, &s));
   PetscCall(MarkersSpread(c->markers, alpha, c->force, w));
@@ -130,10 +130,9 @@ PetscErrorCode CouplingStretching(Coupling c, Vec U, Vec d) {
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(VecGetArray(d, &stretching));
-  MembraneStretching(c->membrane, c->tau, u, stretching);
+  LawRows(c->law, u, NULL, stretching);
   PetscCall(VecRestoreArray(d, &stretching));
   PetscCall(VecRestoreArrayRead(U, &u));
-  PetscCall(VecScale(d, 1 / PetscSqr(c->fluid->grid->h)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,7 +198,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(BodiesCreate(m, obstacles, &c->bodies));
   PetscCall(MobilityCreate(fluid, c->bodies, &setting->mobility, &c->mobility));
   c->markers = c->mobility->markers;
-  PetscCall(PetscMalloc1(2 * m->layout->n, &c->tau));
+  PetscCall(LawCreate(m, fluid->grid->h, m->layout->own, m->layout->end, &c->law));
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->X));
@@ -215,21 +214,21 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
 PetscErrorCode CouplingForces(Coupling c, PetscReal t, Vec sigma, Vec X, Vec F) {
   const Membrane m = c->membrane;
   const PetscScalar *x, *s;
-  PetscReal *tau;
   PetscScalar *f;
+  MembraneLaw law;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * m->layout->n, &tau));
+  PetscCall(LawCreate(m, c->fluid->grid->h, m->layout->own, m->layout->end, &law));
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayRead(sigma, &s));
-  MembraneTangents(m, x, tau);
-  MembraneStretchingTranspose(m, tau, -1, s, f);
+  LawPlace(law, x);
+  LawForce(law, -1, s, f);
   PetscCall(ForcesLaw(c->forces, FORCE_WITHIN, FORCE_OUTSIDE, t, x, f));
   PetscCall(VecRestoreArrayRead(sigma, &s));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecRestoreArray(F, &f));
-  PetscCall(PetscFree(tau));
+  PetscCall(LawDestroy(&law));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,7 +240,7 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   PetscCall(ForcesDestroy(&c->forces));
   PetscCall(MobilityDestroy(&c->mobility));
   PetscCall(BodiesDestroy(&c->bodies));
-  PetscCall(PetscFree(c->tau));
+  PetscCall(LawDestroy(&c->law));
   PetscCall(PetscFree(c->treading));
   PetscCall(VecDestroy(&c->X));
   PetscCall(VecDestroy(&c->force));

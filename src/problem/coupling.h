@@ -4,6 +4,7 @@
 #pragma once
 #include "bodies/arearow.h"
 #include "bodies/forcelist.h"
+#include "bodies/law.h"
 #include "mobility/mobility.h"
 
 typedef struct _p_Coupling *Coupling;
@@ -15,7 +16,7 @@ struct _p_Coupling {
   Markers markers;     /* those of the mobility, borrowed */
   Forces forces;       /* on the membranes */
   AreaRow area;        /* NULL without area target */
-  PetscReal *tau;      /* [2n] tangents of the own vesicles */
+  MembraneLaw law;     /* of the own vesicles */
   PetscReal *treading; /* [vesicles] speed of the labels in which the step is made (1/time) */
   Vec X;               /* markers of all bodies */
   Vec force;           /* marker vector of all bodies, work */

@@ -9,7 +9,7 @@ static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
   PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, f));
-  MembraneStretchingTranspose(c->membrane, c->tau, 1, x + UnknownsTension(u), f);
+  LawForce(c->law, 1, x + UnknownsTension(u), f);
   PetscCall(PetscArraycpy(f + u->velocity, x + u->velocity, u->solid));
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -56,8 +56,7 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   PetscCall(Subtract(s->U, tension, y)); /* (3), (5) - U - k */
   if (q) PetscCall(Subtract(q->k, tension, y));
   if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n); /* (5) beta N N^T F */
-  MembraneStretching(c->membrane, c->tau, x, y + tension);                         /* (4) Dm V/h^2 - g */
-  for (PetscInt k = 0; k < u->tension; k++) y[tension + k] /= PetscSqr(c->fluid->grid->h);
+  LawRows(c->law, x, x + tension, y + tension);                                    /* (4) Dm V/h^2 - g */
   if (q) PetscCall(Subtract(q->g, u->tension, y + tension));
   if (c->area) AreaRowReplace(c->area, q ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
   UnknownsScale(u, PETSC_FALSE, y);

@@ -18,7 +18,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   u->length = Length(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
-  u->tension = coupling->membrane->layout->n;
+  u->tension = LawNumbers(coupling->law);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,10 +29,9 @@ PetscErrorCode UnknownsDestroy(Unknowns *unknowns) {
 }
 
 PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
-  const PetscInt numbers = 2 * u->coupling->bodies->layout->M + u->coupling->membrane->layout->M;
   PetscFunctionBeginUser;
   PetscCall(VecCreate(u->coupling->fluid->grid->comm, x));
-  PetscCall(VecSetSizes(*x, UnknownsTension(u) + u->tension, numbers));
+  PetscCall(VecSetSizes(*x, UnknownsTension(u) + u->tension, PETSC_DETERMINE));
   PetscCall(VecSetType(*x, VECSTANDARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -66,28 +65,24 @@ PetscErrorCode UnknownsUnpack(Unknowns u, Vec x, Vec V, Vec solid, Vec sigma) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal UnknownsWeight(Unknowns u) {
+/* nu + h l alpha */
+static PetscReal UnknownsWeight(Unknowns u) {
   const Fluid f = u->coupling->fluid;
   return f->nu + f->grid->h * u->length * f->alpha;
-}
-
-PetscReal UnknownsTensionScale(Unknowns u, PetscInt v) {
-  return PetscSqr(u->coupling->fluid->grid->h) / u->coupling->membrane->ds[v] * UnknownsWeight(u);
 }
 
 void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   const Membrane m = u->coupling->membrane;
   const Layout l = m->layout;
   const Fluid f = u->coupling->fluid;
+  const Obstacles o = u->coupling->bodies->obstacles;
+  const PetscReal weight = UnknownsWeight(u);
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscReal stiffness = m->bending * m->part[v] / (f->a0 * f->nu * PetscPowRealInt(m->ds[v], 3));
-    const PetscReal tension = UnknownsTensionScale(u, v);
-    const PetscReal velocity = tension / PetscSqr(f->grid->h) * PetscSqrtReal(1 + stiffness);
-    const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
-    PetscScalar *V = y + 2 * at, *sigma = y + UnknownsTension(u) + at;
-    for (PetscInt k = 0; k < 2 * n; k++) V[k] = inverse ? V[k] / velocity : V[k] * velocity;
-    for (PetscInt k = 0; k < n; k++) sigma[k] = inverse ? sigma[k] / tension : sigma[k] * tension;
+    const PetscReal velocity = weight / m->ds[v] * PetscSqrtReal(1 + stiffness);
+    for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k++)
+      y[k] = inverse ? y[k] / velocity : y[k] * velocity;
   }
-  const Obstacles o = u->coupling->bodies->obstacles;
-  if (o) ObstaclesScale(o, UnknownsWeight(u), inverse, y + u->velocity);
+  if (o) ObstaclesScale(o, weight, inverse, y + u->velocity);
+  LawScale(u->coupling->law, weight, inverse, y + UnknownsTension(u));
 }

@@ -40,8 +40,3 @@ PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScala
 static inline PetscInt UnknownsTension(Unknowns u) {
   return u->velocity + u->solid;
 }
-
-/* UnknownsWeight - nu + h l alpha. UnknownsTensionScale - the factor of the rows Dm V/h^2 = g of one vesicle. Not
- * collective. */
-PETSC_EXTERN PetscReal UnknownsWeight(Unknowns unknowns);
-PETSC_EXTERN PetscReal UnknownsTensionScale(Unknowns unknowns, PetscInt vesicle);

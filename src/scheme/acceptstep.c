@@ -2,13 +2,7 @@
 #include "base/agree.h"
 #include "scheme/coupled.h"
 
-/* Relative errors of an edge above which all are corrected after a step, with the area target and without, and above
-   which that is worth a warning; those of a length that is corrected alone. Bending energy changes by up to half of
-   what edges are uneven by. */
-#define EDGE_TOLERANCE 1e-7
-#define EDGE_TOLERANCE_WITHOUT_AREA 1e-3
-#define EDGE_WARNING 0.01
-#define LENGTH_TOLERANCE 1e-3
+#define EDGE_WARNING 0.01 /* relative error of an edge that is worth a warning */
 
 /* What happened to the vesicles; `who` has the largest error of an edge. */
 typedef struct {
@@ -44,8 +38,7 @@ static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Rest
   r->most = PetscMax(r->most, shift);
   r->least = PetscMin(r->least, shift);
   if (!s->scene->scheme.length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MembraneRestoreEdges(m, v, area ? EDGE_TOLERANCE : EDGE_TOLERANCE_WITHOUT_AREA, X, &error));
-  if (error == 0 && area) PetscCall(MembraneRestoreLength(m, v, LENGTH_TOLERANCE, X));
+  PetscCall(LawRestore(s->coupling->law, v, area, X, &error));
   if (error > r->error) {
     r->error = error;
     r->who = v;

@@ -8,33 +8,16 @@
 #define FAR 1.1    /* times as far from its extrapolation as from where it began: its motion has stopped */
 #define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
 
-/* S^T u = g: the new edges get the length ds, linearised at the extrapolated edge e*:
-   e*.(dU)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], the background's own stretching taken off (already in g). */
+/* The rows of the membranes' law aim at the lengths of edges; the background's own stretching is in g already. */
 static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
-  const Membrane m = s->membrane;
-  const Layout l = m->layout;
-  const PetscReal h2 = PetscSqr(s->fluid->grid->h), *tau = s->coupling->tau;
-  const PetscScalar *xh;
-  PetscScalar *g, *hat = d->edges;
+  const PetscScalar *hat;
+  PetscScalar *g;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(d->Xhat, &xh));
+  PetscCall(VecGetArrayRead(d->Xhat, &hat));
   PetscCall(VecGetArray(s->g, &g));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = LayoutOffset(l, v);
-    const PetscReal ds = m->ds[v];
-    MembraneEdges(m, v, xh + 2 * at, hat);
-    for (PetscInt k = 0; k < LayoutCount(l, v); k++) {
-      PetscReal star2 = 0, gap = 0;
-      for (int c = 0; c < 2; c++) {
-        const PetscReal e = ds * tau[2 * (at + k) + c]; /* the extrapolated edge */
-        star2 += e * e;
-        gap += e * (hat[2 * k + c] - e);
-      }
-      g[at + k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * h2);
-    }
-  }
+  LawTarget(s->coupling->law, a0, hat, g);
   PetscCall(VecRestoreArray(s->g, &g));
-  PetscCall(VecRestoreArrayRead(d->Xhat, &xh));
+  PetscCall(VecRestoreArrayRead(d->Xhat, &hat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -185,7 +168,7 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   PetscCall(CouplingKnownForce(s->coupling, d->next.X, d->Xstar, d->Y));
   PetscCall(VecGetArrayRead(d->next.sigma, &sigma));
   PetscCall(VecGetArray(d->Y, &F));
-  MembraneStretchingTranspose(s->membrane, s->coupling->tau, 1, sigma, F);
+  LawForce(s->coupling->law, 1, sigma, F);
   PetscCall(VecRestoreArray(d->Y, &F));
   PetscCall(VecRestoreArrayRead(d->next.sigma, &sigma));
   PetscCall(StressMeasure(s, d->next.w, d->next.p, d->Y, d->next.X, d->next.U));

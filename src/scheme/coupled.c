@@ -280,7 +280,6 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
-  PetscCall(PetscMalloc1(2 * s->membrane->layout->n, &d->edges));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -294,7 +293,6 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   PetscCall(HistoryDestroy(&d->history));
   for (int i = 0; i < 9; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->made_with));
-  PetscCall(PetscFree(d->edges));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

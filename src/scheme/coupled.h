@@ -23,7 +23,6 @@ typedef struct {
   Vec force;             /* minus the known part of the force on all bodies' markers */
   Vec V, known, Y;       /* solved part and known part of the markers' velocity, obstacles included; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */
-  PetscScalar *edges;    /* [2n] work */
 } Coupled;
 
 /* The flows of a scheme whose states have them. */

@@ -50,7 +50,6 @@ static PetscErrorCode CreateState(Scheme s, const PetscReal X[]) {
   if (s->fluid->total) PetscCall(VecCopy(s->fluid->background, q->w));
   PetscCall(VecDuplicate(q->X, &s->background));
   PetscCall(VecDuplicate(q->sigma, &s->g));
-  PetscCall(VecDuplicate(q->sigma, &s->work_tension));
   PetscCall(PetscMalloc1(2 * s->coupling->bodies->layout->M, &s->work_all));
   if (CouplingHasMembrane(s->coupling)) PetscCall(PlaceFirst(s, X));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -90,7 +89,6 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   }
   PetscCall(VecDestroy(&s->background));
   PetscCall(VecDestroy(&s->g));
-  PetscCall(VecDestroy(&s->work_tension));
   PetscCall(PetscFree(s->work_all));
   for (PetscInt k = 0; k < s->warnings.n; k++) PetscCall(PetscFree(s->warnings.text[k]));
   PetscCall(PetscFree(*scheme));

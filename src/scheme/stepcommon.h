@@ -18,7 +18,7 @@ typedef struct {
   PetscInt tension_its, bending_its, coupled_its;
   PetscInt solves;           /* scalar fast solves of the step */
   PetscReal div_max;         /* max |G^T u + bc2|, the divergence that the solver left (1/time) */
-  PetscReal surface_div_max; /* max |h^2 (Dm V/h^2 - g)/ds|, the surface divergence that the solver left (1/time) */
+  PetscReal surface_div_max; /* the surface divergence that the solver left (LawLargest; 1/time) */
   PetscReal area_shift;      /* largest shift of markers that restored a vesicle's area (length) */
   PetscReal estimate;        /* error estimate of a fixed step: max |X - X*|/R0; 0 in a first step and in baselines */
   PetscReal cfl;             /* dt max(|u| + |v|)/h; 0 without convection */
@@ -86,11 +86,10 @@ struct _p_Scheme {
   Snapshot before;        /* what SchemeStep goes back to when a step fails */
   Warnings warnings;
   StepReport report;
-  Vec background;   /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
-                       form */
-  Vec g;            /* edge vector: S^T u = g, minus the background's stretching, Dm u_inf/h^2 */
-  Vec work_tension; /* edge vector, for use inside one function */
-  PetscScalar *work_all; /* [2(M + W)] likewise, of all curves */
+  Vec background; /* marker vector: what the markers' velocity has besides the solved part: u_inf, zero in the total
+                     form */
+  Vec g;          /* right-hand side of the rows of the membranes' law (law.h), minus those of u_inf; edge vector */
+  PetscScalar *work_all; /* [2(M + W)] of all curves, for use inside one function */
   void *data;            /* the scheme's own */
   SchemeOps ops;
   PetscInt solvers;
@@ -115,8 +114,8 @@ PETSC_EXTERN void SchemeAddSolver(Scheme scheme, KSP ksp, PC inner);
 PETSC_EXTERN void SchemeIterations(Scheme scheme, PetscInt tension, PetscInt bending);
 
 /* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
-   (CouplingPlace), and the background of time t there: background = u_inf(X), g = -Dm background/h^2. placed is false
-   with report.failure when a marker is too close to a wall or the flow has no value. Collective. */
+   (CouplingPlace), and the background of time t there: background = u_inf(X), g minus the law's rows of the background.
+   placed is false with report.failure when a marker is too close to a wall or the flow has no value. Collective. */
 PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t,
                                         PetscBool *placed);
 

@@ -98,15 +98,15 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
   const PetscInt V = d->first[PART_V] + 2 * first, F = d->first[PART_F] + 2 * first, area = d->first[PART_AREA] + v;
   const PetscReal h2 = PetscSqr(d->grid->h), a0 = d->fluid->a0;
   const Turning *turning = (const Turning *)ForcesFind(d->c->forces, "turning");
-  PetscReal *unit, *stretching, *force, *turned;
+  PetscReal *unit, *D, *force, *turned;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(2 * n, &unit, n, &stretching, 2 * n, &force, 2 * n, &turned));
+  PetscCall(PetscCalloc4(2 * n, &unit, 2 * n * n, &D, 2 * n, &force, 2 * n, &turned));
+  PetscCall(LawBlock(d->c->law, v, D));
   for (PetscInt c = 0; c < 2 * n; c++) {
     unit[c] = 1;
-    MembraneVesicleStretching(m, v, d->c->tau + 2 * first, unit, stretching);
     for (PetscInt k = 0; k < n; k++) {
-      PetscCall(DirectAdd(d, sigma + k, V + c, stretching[k] / h2));
-      PetscCall(DirectAdd(d, F + c, sigma + k, -stretching[k] / h2));
+      PetscCall(DirectAdd(d, sigma + k, V + c, D[2 * n * k + c]));
+      PetscCall(DirectAdd(d, F + c, sigma + k, -D[2 * n * k + c]));
     }
     PetscCall(DirectAdd(d, F + c, F + c, 1));
     PetscCall(PetscArrayzero(force, 2 * n));
@@ -122,7 +122,7 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
     if (d->c->area) PetscCall(DirectAdd(d, area, V + c, d->c->area->z[2 * first + c]));
     unit[c] = 0;
   }
-  PetscCall(PetscFree4(unit, stretching, force, turned));
+  PetscCall(PetscFree4(unit, D, force, turned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -192,23 +192,26 @@ static PetscErrorCode CheckBending(const TestMembrane *m, unsigned *state) {
 static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
   const PetscInt n = 2 * m->M;
   const PetscReal *X = m->scene->shape.X;
-  PetscReal *F, *V, *sigma, *d, *tau, product = 0, swapped = 0, size = 0, error = 0;
+  PetscReal *F, *V, *sigma, *d, product = 0, swapped = 0, size = 0, error = 0;
+  MembraneLaw law;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc5(n, &F, n, &V, m->M, &sigma, m->M, &d, n, &tau));
+  PetscCall(PetscCalloc4(n, &F, n, &V, m->M, &sigma, m->M, &d));
+  PetscCall(LawCreate(m->membrane, 1, 0, 1, &law));
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
   for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
-  MembraneTangents(m->membrane, X, tau);
-  MembraneStretching(m->membrane, tau, V, d);
+  LawPlace(law, X);
+  LawRows(law, V, sigma, d);
   for (PetscInt k = 0; k < m->M; k++) product += d[k] * sigma[k], size += PetscAbsReal(d[k] * sigma[k]);
-  MembraneStretchingTranspose(m->membrane, tau, 1, sigma, F);
+  LawForce(law, 1, sigma, F);
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * V[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "Dm and Dm^T adjoint, error %.1e",
         PetscAbsReal(product - swapped) / size);
   for (PetscInt k = 0; k < m->M; k++) V[2 * k] = 3 - 2 * X[2 * k + 1], V[2 * k + 1] = 1 + 2 * X[2 * k];
-  MembraneStretching(m->membrane, tau, V, d);
+  LawRows(law, V, sigma, d);
   for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(d[k]));
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
-  PetscCall(PetscFree5(F, V, sigma, d, tau));
+  PetscCall(LawDestroy(&law));
+  PetscCall(PetscFree4(F, V, sigma, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

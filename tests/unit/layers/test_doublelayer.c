@@ -228,14 +228,16 @@ static PetscErrorCode CheckAdjoint(PetscInt n, const PetscReal D[], const PetscR
 static PetscErrorCode Inextensible(const TestWorld *w, PetscReal Q[]) {
   const PetscInt M = w->layout->M, n = 2 * M, rows = M + 1;
   const DoubleLayer s = w->coupling->mobility->contrast;
-  PetscReal *tau, *A, *l, *U;
+  PetscReal *A, *l, *U;
+  MembraneLaw law;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &tau, rows * n, &A, n, &l, n, &U));
+  PetscCall(LawCreate(w->membrane, 1, 0, 1, &law));
+  LawPlace(law, w->coupling->markers->X);
+  PetscCall(PetscMalloc3(rows * n, &A, n, &l, n, &U));
   PetscCall(PetscArrayzero(U, n));
-  MembraneVesicleTangents(w->membrane, 0, w->coupling->markers->X, tau);
   for (PetscInt k = 0; k < n; k++) {
     U[k] = 1;
-    MembraneVesicleStretching(w->membrane, 0, tau, U, A + k * rows);
+    LawRows(law, U, NULL, A + k * rows);
     A[k * rows + M] = s->normal[k] / s->along[k / 2];
     U[k] = 0;
   }
@@ -243,7 +245,8 @@ static PetscErrorCode Inextensible(const TestWorld *w, PetscReal Q[]) {
   PetscCall(DenseEigen(n, Q, l));
   CHECK(l[M - 2] < 1e-12 * l[n - 1] && l[M - 1] > 1e-6 * l[n - 1],
         "M - 1 motions stretch no edge and keep the area: %.0e, %.0e", l[M - 2], l[M - 1]);
-  PetscCall(PetscFree4(tau, A, l, U));
+  PetscCall(PetscFree3(A, l, U));
+  PetscCall(LawDestroy(&law));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -123,8 +123,9 @@ static PetscErrorCode CheckShift(PetscInt n) {
 typedef struct {
   TestMembrane w;
   const char *derivative;
-  PetscReal *X, *U, *tau, *F, *other; /* [2M]: markers, random velocity, tangents, room for a force and for markers */
-  PetscReal *d, *sigma;               /* [M]: stretching of U, random tension */
+  PetscReal *X, *U, *F, *other; /* [2M]: markers, random velocity, room for a force and for markers */
+  MembraneLaw law;
+  PetscReal *d, *sigma; /* [M]: stretching of U, random tension */
 } Near;
 
 static PetscErrorCode NearCreate(const char derivative[], Near *q) {
@@ -139,22 +140,24 @@ static PetscErrorCode NearCreate(const char derivative[], Near *q) {
   q->derivative = derivative;
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;
-  PetscCall(PetscCalloc5(2 * M, &q->X, 2 * M, &q->U, 2 * M, &q->tau, 2 * M, &q->F, 2 * M, &q->other));
+  PetscCall(PetscCalloc4(2 * M, &q->X, 2 * M, &q->U, 2 * M, &q->F, 2 * M, &q->other));
   PetscCall(PetscCalloc2(M, &q->d, M, &q->sigma));
   for (PetscInt k = 0; k < 2 * M; k++) {
     q->U[k] = TestRandom(&seed);
     q->X[k] = q->w.scene->shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
     q->sigma[k / 2] = TestRandom(&seed);
   }
-  MembraneTangents(m, q->X, q->tau);
-  MembraneStretching(m, q->tau, q->U, q->d);
+  PetscCall(LawCreate(m, 1, 0, 1, &q->law));
+  LawPlace(q->law, q->X);
+  LawRows(q->law, q->U, q->sigma, q->d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode NearDestroy(Near *q) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(q->X, q->U, q->tau, q->F, q->other));
+  PetscCall(PetscFree4(q->X, q->U, q->F, q->other));
   PetscCall(PetscFree2(q->d, q->sigma));
+  PetscCall(LawDestroy(&q->law));
   PetscCall(TestMembraneDestroy(&q->w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +169,7 @@ static PetscErrorCode CheckForces(Near *q) {
   const PetscReal step = 1e-4;
   PetscReal half[2] = {0, 0}, energy[2], rate, slope;
   PetscFunctionBeginUser;
-  MembraneStretchingTranspose(m, q->tau, 1, q->sigma, q->F);
+  LawForce(q->law, 1, q->sigma, q->F);
   rate = Dot(M, q->sigma, q->d) - Dot(2 * M, q->U, q->F);
   CHECK(PetscAbsReal(rate) < 1e-13 * M, "%s: sigma.(Dm U) - (Dm^T sigma).U = %.1e", q->derivative, rate);
   for (int side = 0; side < 2; side++) {

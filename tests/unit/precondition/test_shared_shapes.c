@@ -127,21 +127,22 @@ static PetscErrorCode CheckSelfLayer(PetscInt n) {
 static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const PetscScalar sigma[],
                                PetscScalar U[], PetscScalar s[]) {
   const Membrane m = t->membrane;
-  const PetscReal *X = t->coupling->markers->X + 2 * t->layout->start[v], h2 = PetscSqr(t->fluid->grid->h);
-  PetscReal *S, tau[2 * N], pull[2 * N], F[2 * N] = {0};
+  const PetscReal *X = t->coupling->markers->X + 2 * t->layout->start[v];
+  PetscReal *S, F[2 * N] = {0};
+  MembraneLaw law;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * N * N, &S));
   PetscCall(SelfLayer(&t->coupling->mobility->near->set, m->spectral[v], N, X, S));
-  MembraneVesicleTangents(m, v, X, tau);
-  for (PetscInt k = 0; k < 2 * N; k++) pull[k] = sigma[k / 2] * tau[k];
-  MembraneEdgesTranspose(m, v, 1, pull, F);
+  PetscCall(LawCreate(m, t->fluid->grid->h, v, v + 1, &law));
+  LawPlace(law, X);
+  LawForce(law, 1, sigma, F);
   MembraneVesicleBending(m, v, m->bending / t->fluid->a0, V, F);
   for (PetscInt i = 0; i < 2 * N; i++) {
     U[i] = V[i];
     for (PetscInt j = 0; j < 2 * N; j++) U[i] += S[j * 2 * N + i] * F[j];
   }
-  MembraneVesicleStretching(m, v, tau, V, s);
-  for (PetscInt k = 0; k < N; k++) s[k] /= h2;
+  LawRows(law, V, sigma, s);
+  PetscCall(LawDestroy(&law));
   PetscCall(PetscFree(S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,7 +192,7 @@ static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) 
   PetscCall(ForcesRate(t->coupling->forces, 1 / t->fluid->a0, f, u));
   PetscCall(VecRestoreArrayRead(V, &f));
   PetscCall(VecGetArrayRead(sigma, &f));
-  MembraneStretchingTranspose(t->membrane, t->coupling->tau, 1, f, u);
+  LawForce(t->coupling->law, 1, f, u);
   PetscCall(VecRestoreArrayRead(sigma, &f));
   PetscCall(VecRestoreArray(F, &u));
   PetscCall(TestWorldRespond(t, stokes, PETSC_TRUE, F, U));

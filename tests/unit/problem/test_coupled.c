@@ -61,16 +61,13 @@ static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool rand
 
 /* d times the scale of each edge's row: what a residual of S^T u = g counts in the solver's norm. */
 static PetscErrorCode ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
-  const Layout l = q->t.layout;
   PetscScalar *a;
   Vec scaled;
   PetscFunctionBeginUser;
-  PetscCall(TestVecs(d, &scaled, NULL));
-  PetscCall(VecCopy(d, scaled));
+  PetscCall(TestVecs(q->s->x, &scaled, NULL));
+  PetscCall(UnknownsPack(q->s->unknowns, NULL, NULL, d, scaled));
   PetscCall(VecGetArray(scaled, &a));
-  for (PetscInt v = l->own; v < l->end; v++)
-    for (PetscInt k = 0; k < LayoutCount(l, v); k++)
-      a[LayoutOffset(l, v) + k] *= UnknownsTensionScale(q->s->unknowns, v);
+  UnknownsScale(q->s->unknowns, PETSC_FALSE, a);
   PetscCall(VecRestoreArray(scaled, &a));
   PetscCall(VecNorm(scaled, NORM_2, norm));
   PetscFunctionReturn(PETSC_SUCCESS);

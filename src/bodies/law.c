@@ -1,0 +1,139 @@
+#include "bodies/law.h"
+#include "numerics/blas.h"
+
+/* Relative errors of an edge above which all are corrected after a step, with the area target and without, and of a
+   length that is corrected alone. Bending energy changes by up to half of what edges are uneven by. */
+#define EDGE_TOLERANCE 1e-7
+#define EDGE_TOLERANCE_WITHOUT_AREA 1e-3
+#define LENGTH_TOLERANCE 1e-3
+
+#define REGULAR 1e-9 /* of the mean diagonal of C */
+
+PetscErrorCode LawCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end, MembraneLaw *law) {
+  const PetscInt *start = m->layout->start;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(law));
+  **law = (struct _p_MembraneLaw){m, h * h, vesicle, end, start[vesicle], start[end] - start[vesicle], NULL};
+  PetscCall(PetscMalloc1(2 * (*law)->n, &(*law)->tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawDestroy(MembraneLaw *law) {
+  PetscFunctionBeginUser;
+  if (*law) PetscCall(PetscFree((*law)->tau));
+  PetscCall(PetscFree(*law));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Index of a vesicle's first marker among those of the law. */
+static PetscInt LawOffset(MembraneLaw law, PetscInt v) {
+  return law->membrane->layout->start[v] - law->first;
+}
+
+void LawPlace(MembraneLaw law, const PetscScalar X[]) {
+  MembraneTangents(law->membrane, law->vesicle, law->end, X, law->tau);
+}
+
+void LawForce(MembraneLaw law, PetscReal alpha, const PetscScalar sigma[], PetscScalar F[]) {
+  const Membrane m = law->membrane;
+  PetscScalar *pull = m->work.stretching;
+  for (PetscInt v = law->vesicle; v < law->end; v++) {
+    const PetscInt at = LawOffset(law, v);
+    for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k++) pull[k] = law->tau[2 * at + k] * sigma[at + k / 2];
+    MembraneEdgesTranspose(m, v, alpha, pull, F + 2 * at);
+  }
+}
+
+void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], PetscScalar d[]) {
+  const Membrane m = law->membrane;
+  PetscScalar *e = m->work.stretching;
+  for (PetscInt v = law->vesicle; v < law->end; v++) {
+    const PetscInt at = LawOffset(law, v);
+    const PetscReal *tau = law->tau + 2 * at;
+    MembraneEdges(m, v, V + 2 * at, e);
+    for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++)
+      d[at + k] = (tau[2 * k] * e[2 * k] + tau[2 * k + 1] * e[2 * k + 1]) / law->h2;
+  }
+}
+
+void LawTarget(MembraneLaw law, PetscReal a0, const PetscScalar Xhat[], PetscScalar g[]) {
+  const Membrane m = law->membrane;
+  PetscScalar *hat = m->work.stretching;
+  for (PetscInt v = law->vesicle; v < law->end; v++) {
+    const PetscInt at = LawOffset(law, v);
+    const PetscReal ds = m->ds[v];
+    MembraneEdges(m, v, Xhat + 2 * at, hat);
+    for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++) {
+      PetscReal star2 = 0, gap = 0;
+      for (int c = 0; c < 2; c++) {
+        const PetscReal e = ds * law->tau[2 * (at + k) + c];
+        star2 += e * e;
+        gap += e * (hat[2 * k + c] - e);
+      }
+      g[at + k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
+    }
+  }
+}
+
+void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]) {
+  const Membrane m = law->membrane;
+  for (PetscInt v = law->vesicle; v < law->end; v++) {
+    const PetscReal factor = law->h2 / m->ds[v] * weight;
+    for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) d[k] = inverse ? d[k] / factor : d[k] * factor;
+  }
+}
+
+PetscErrorCode LawLargest(MembraneLaw law, const PetscScalar V[], const PetscScalar g[], PetscReal *largest) {
+  PetscScalar *d;
+  PetscFunctionBeginUser;
+  *largest = 0;
+  PetscCall(PetscMalloc1(law->n, &d));
+  LawRows(law, V, NULL, d);
+  for (PetscInt k = 0; k < law->n; k++) d[k] -= g[k];
+  LawScale(law, 1, PETSC_FALSE, d);
+  for (PetscInt k = 0; k < law->n; k++) *largest = PetscMax(*largest, PetscAbsReal(d[k]));
+  PetscCall(PetscFree(d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The edges of a unit at one marker are those of all others, shifted. */
+PetscErrorCode LawBlock(MembraneLaw law, PetscInt v, PetscReal D[]) {
+  const PetscInt n = LayoutCount(law->membrane->layout, v);
+  const PetscReal *tau = law->tau + 2 * LawOffset(law, v);
+  PetscReal *unit, *first;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * n, &unit, 2 * n, &first));
+  unit[0] = 1;
+  MembraneEdges(law->membrane, v, unit, first);
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt j = 0; j < n; j++)
+      for (int c = 0; c < 2; c++)
+        D[(k * n + j) * 2 + c] = tau[2 * k + c] * first[2 * (k < j ? k - j + n : k - j)] / law->h2;
+  PetscCall(PetscFree2(unit, first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawSchur(MembraneLaw law, const PetscReal K[], PetscReal C[]) {
+  const PetscInt n = law->n;
+  PetscReal *D, trace = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * n * n, &D));
+  for (PetscInt v = law->vesicle; v < law->end; v++) {
+    const PetscInt own = LawOffset(law, v), nv = LayoutCount(law->membrane->layout, v);
+    const DenseView columns = {K + 2 * own, 2 * nv, n, 2 * n};
+    PetscCall(LawBlock(law, v, D));
+    PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){D, 2 * nv, nv, 2 * nv}, columns, 0, C + own, n));
+  }
+  for (PetscInt k = 0; k < n; k++) trace += C[k * n + k];
+  for (PetscInt k = 0; k < n; k++) C[k * n + k] += REGULAR * trace / n;
+  PetscCall(PetscFree(D));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawRestore(MembraneLaw law, PetscInt v, PetscBool area, PetscScalar X[], PetscReal *error) {
+  const PetscReal tolerance = area ? EDGE_TOLERANCE : EDGE_TOLERANCE_WITHOUT_AREA;
+  PetscFunctionBeginUser;
+  PetscCall(MembraneRestoreEdges(law->membrane, v, tolerance, X, error));
+  if (*error == 0 && area) PetscCall(MembraneRestoreLength(law->membrane, v, LENGTH_TOLERANCE, X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,60 @@
+/* What the edges of membranes obey: unknowns at the edges, the forces that they make on the markers, and as many rows,
+   which determine them. The law of all vesicles is that edges keep their lengths; its unknowns sigma are the tension,
+   one number an edge. With the markers X* where the law is placed, their edges e* = D X*, tau = e* /ds, and
+   (Dm U)_k = tau_k.(D U)_k, the stretching rate of the edges times ds,
+
+       F = Dm^T sigma        minus the force on the markers
+       Dm V/h^2 = g          the rows, h the size of the grid's cells, V the markers' solved velocity.
+
+   A law is that of the vesicles vesicle .. end - 1. Arrays are of these vesicles: [2n] of their n markers, [n] of their
+   edges, LawNumbers unknowns and rows. Nothing crosses ranks. */
+#pragma once
+#include "bodies/membrane.h"
+
+typedef struct _p_MembraneLaw *MembraneLaw;
+struct _p_MembraneLaw {
+  Membrane membrane; /* borrowed */
+  PetscReal h2;      /* h^2 */
+  PetscInt vesicle, end;
+  PetscInt first, n; /* its markers */
+  PetscReal *tau;    /* [2n] */
+};
+
+PETSC_EXTERN PetscErrorCode LawCreate(Membrane membrane, PetscReal h, PetscInt vesicle, PetscInt end, MembraneLaw *law);
+PETSC_EXTERN PetscErrorCode LawDestroy(MembraneLaw *law);
+
+/* LawNumbers - how many unknowns and rows there are. */
+static inline PetscInt LawNumbers(MembraneLaw law) {
+  return law->n;
+}
+
+/* LawPlace - linearise at the markers X[2n]. */
+PETSC_EXTERN void LawPlace(MembraneLaw law, const PetscScalar X[]);
+
+/* LawForce - F += alpha Dm^T sigma. LawRows - d = the left-hand sides of the rows for V and sigma; the rows of
+   inextensible edges have nothing of sigma, which may be NULL: 0. */
+PETSC_EXTERN void LawForce(MembraneLaw law, PetscReal alpha, const PetscScalar sigma[], PetscScalar F[]);
+PETSC_EXTERN void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], PetscScalar d[]);
+
+/* LawTarget - g += what gives the edges of the new markers Xhat + U/a0 their length ds, linearised:
+   e*.(D U)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], ehat = D Xhat. */
+PETSC_EXTERN void LawTarget(MembraneLaw law, PetscReal a0, const PetscScalar Xhat[], PetscScalar g[]);
+
+/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - the largest
+   residual of the rows for V, times h^2/ds: a surface divergence (1/time). */
+PETSC_EXTERN void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]);
+PETSC_EXTERN PetscErrorCode LawLargest(MembraneLaw law, const PetscScalar V[], const PetscScalar g[],
+                                       PetscReal *largest);
+
+/* LawBlock - D[n][2n] = Dm/h^2 of one vesicle's n edges and markers, a row behind the other; its transpose is also F
+   over h^2 as it follows from sigma. LawSchur - the law's part of a dense problem of all its vesicles: C[n][n], a
+   column behind the other, is what the rows make of V = K sigma, K[n][2n] likewise, plus what keeps C regular: tension
+   is all but a pressure where the vesicle is all but a circle. */
+PETSC_EXTERN PetscErrorCode LawBlock(MembraneLaw law, PetscInt vesicle, PetscReal D[]);
+PETSC_EXTERN PetscErrorCode LawSchur(MembraneLaw law, const PetscReal K[], PetscReal C[]);
+
+/* LawRestore - after a step, what the linearised rows have left of one own vesicle's edges is taken away
+   (MembraneRestoreEdges), or where that cannot be, of its length. area: the vesicle's area has been restored. error:
+   the largest relative error of an edge that was corrected; 0 when none was. */
+PETSC_EXTERN PetscErrorCode LawRestore(MembraneLaw law, PetscInt vesicle, PetscBool area, PetscScalar X[],
+                                       PetscReal *error);
