@@ -14,6 +14,28 @@ static PetscErrorCode FramesPutRatios(H5File *f, Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The lines through the markers of all bodies of a kind as cells of VTK, and their numbers from 1 on: of each body the
+   type of a line of many points, how many, and the points, of which the first comes again where it is closed. */
+static PetscErrorCode FramesPutLines(H5File *f, Layout l, const CurveKind kind[], const char lines[],
+                                     const char number[]) {
+  enum { POLYLINE = 2 };
+  PetscInt *list, n = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(l->M + 3 * l->bodies, &list));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt closed = !kind || kind[v].type == CURVE_CLOSED;
+    list[n++] = POLYLINE;
+    list[n++] = LayoutCount(l, v) + closed;
+    for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++) list[n++] = k;
+    if (closed) list[n++] = l->start[v];
+  }
+  H5PutWhole(f, lines, n, list);
+  for (PetscInt v = 0; v < l->bodies; v++) list[v] = v + 1;
+  H5PutWhole(f, number, l->bodies, list);
+  PetscCall(PetscFree(list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The kinds of obstacles, and the markers of obstacles that rest. */
 static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene, Obstacles o) {
   PetscReal *X;
@@ -26,6 +48,7 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   H5PutInts(f, "obstacle_kind", o->layout->bodies, kind);
   H5PutInts(f, "obstacle_start", o->layout->bodies + 1, o->layout->start);
   if (!scene->moving) H5PutRows(f, "/obstacle/markers", o->layout->M, 2, X);
+  PetscCall(FramesPutLines(f, o->layout, o->kind, "/obstacle/lines", "/obstacle/number"));
   PetscCall(PetscFree2(X, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -42,12 +65,18 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
   H5PutReals(f, "c_b", 1, &scene->membrane.bending);
   H5PutInts(f, "vesicle_start", l->bodies + 1, l->start);
   if (l->bodies) H5PutReals(f, "vesicle_c_b", l->bodies, scene->membrane.each);
+  if (l->bodies) PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
   PetscCall(FramesPutRatios(f, scene));
   PetscCall(FramesPutObstacles(f, &scene->obstacles, s->coupling->bodies->obstacles));
   H5PutText(f, "about",
             "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
             "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k");
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool FramesAreWrapped(Scheme s) {
+  const Grid g = s->fluid->grid;
+  return !g->free && !(g->wall[0] && g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The series of this scene, and room for the values of a frame. */
@@ -66,7 +95,10 @@ static PetscErrorCode FramesBegin(Frames *f, Scheme s, AppendedKind *kind) {
   if (M) AppendedAddSeries(kind, "/vesicle/tension", M, 1, PETSC_FALSE);
   if (W) AppendedAddSeries(kind, "/obstacle/force", W, 2, PETSC_FALSE);
   if (s->scene->obstacles.moving) AppendedAddSeries(kind, "/obstacle/markers", W, 2, PETSC_FALSE);
-  PetscCall(PetscMalloc4(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2], 2 * W, &f->solid));
+  if (M && FramesAreWrapped(s)) AppendedAddSeries(kind, "/vesicle/wrapped", M, 2, PETSC_FALSE);
+  if (s->scene->obstacles.moving && FramesAreWrapped(s))
+    AppendedAddSeries(kind, "/obstacle/wrapped", W, 2, PETSC_FALSE);
+  PetscCall(PetscMalloc5(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2], 2 * M, &f->wrapped, 2 * W, &f->solid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +122,40 @@ PetscErrorCode FramesGoOn(Frames *f, Folder *folder, Scheme scheme, PetscInt sch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Shift n markers by whole periods, so that the middle of the places X[2n] is in the box. */
+static void ShiftIntoBox(Grid g, PetscInt n, const PetscReal X[], PetscInt markers, PetscReal shifted[]) {
+  for (int d = 0; d < 2; d++) {
+    const PetscReal period = g->hi[d] - g->lo[d];
+    PetscReal middle = 0;
+    for (PetscInt k = 0; k < n; k++) middle += X[2 * k + d] / n;
+    for (PetscInt k = 0; k < markers && !g->wall[d]; k++)
+      shifted[2 * k + d] -= period * PetscFloorReal((middle - g->lo[d]) / period);
+  }
+}
+
+/* The markers by whole periods in the box, from series k on; f->solid has those of obstacles where they move. */
+static PetscErrorCode FramesSetWrapped(Frames *f, const Gathered *now, PetscInt k) {
+  const Scheme s = f->scheme;
+  const Layout l = s->membrane->layout;
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscReal *X = now->part[GATHERED_MARKERS].values;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(f->wrapped, X, 2 * l->M));
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    const PetscInt at = 2 * l->start[v], n = LayoutCount(l, v);
+    ShiftIntoBox(s->fluid->grid, n, X + at, n, f->wrapped + at);
+  }
+  if (l->M) AppendedSet(&f->file, k++, f->wrapped);
+  if (!s->scene->obstacles.moving) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < o->layout->bodies; v++) {
+    const ObstaclePose pose = ObstaclesPose(o, v, s->state.t);
+    if (o->motion[v].carried)
+      ShiftIntoBox(s->fluid->grid, 1, pose.center, LayoutCount(o->layout, v), f->solid + 2 * o->layout->start[v]);
+  }
+  AppendedSet(&f->file, k, f->solid);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) {
   const Scheme s = f->scheme;
   const Obstacles o = s->coupling->bodies->obstacles;
@@ -109,8 +175,9 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
   }
   if (s->scene->obstacles.moving) {
     ObstaclesCurves(o, s->state.t, f->solid);
-    AppendedSet(file, k, f->solid);
+    AppendedSet(file, k++, f->solid);
   }
+  if (FramesAreWrapped(s)) PetscCall(FramesSetWrapped(f, now, k));
   PetscCall(AppendedFlush(file, PETSC_FALSE)); /* values before the time by which readers count them */
   PetscCall(AppendedAdd(file, s->state.t));
   PetscCall(AppendedFlush(file, PETSC_FALSE));
@@ -119,18 +186,9 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FramesMarkers(Frames *f, PetscReal **markers) {
-  const PetscInt M = f->scheme->membrane->layout->M;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * M * f->file.count, markers));
-  for (PetscInt t = 0; t < f->file.count && M; t++)
-    PetscCall(H5ReadArray(&f->file.file, "/vesicle/markers", t, 2 * M, *markers + 2 * M * t));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
   PetscFunctionBeginUser;
   PetscCall(AppendedClose(&f->file, good));
-  PetscCall(PetscFree4(f->cells[0], f->cells[1], f->cells[2], f->solid));
+  PetscCall(PetscFree5(f->cells[0], f->cells[1], f->cells[2], f->wrapped, f->solid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,8 +13,13 @@ typedef struct {
   PetscInt scheduled;    /* frames at multiples of -output_every, the first included */
   PetscReal time;        /* time of the last frame */
   PetscScalar *cells[3]; /* u, v, p at cell centres of this rank's rows */
+  PetscReal *wrapped;    /* [M][2] the vesicles' markers by whole periods in the box; work */
   PetscReal *solid;      /* [W][2] force on or places of obstacles' markers; work */
 } Frames;
+
+/* FramesAreWrapped - whether the file has the markers by whole periods in the box too: where the box is periodic. Not
+   collective. */
+PETSC_EXTERN PetscBool FramesAreWrapped(Scheme scheme);
 
 /* FramesCreate - a new, empty file. FramesGoOn - the file of an earlier run, cut to its first `scheduled` frames, whose
    times are in `file`: a frame that was saved only because that run ended goes. Collective; FramesGoOn stops with one
@@ -27,9 +32,6 @@ PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, Folder *folder, Scheme sc
    of -output_every, not only the end of this run. The next frame replaces a frame that is not scheduled, where a run
    goes on after its end. Collective; stops with one line when the frame cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, const Gathered *now, PetscBool scheduled);
-
-/* FramesMarkers - markers[frames][2 M] of the frames that FramesGoOn has found; the caller frees them. Collective. */
-PETSC_EXTERN PetscErrorCode FramesMarkers(Frames *frames, PetscReal **markers);
 
 /* FramesClose - close the file and free everything. good: all of it was written, or a line has said that it was not;
    TRUE on ranks other than 0. Not collective. */

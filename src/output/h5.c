@@ -168,6 +168,11 @@ void H5PutRows(H5File *f, const char name[], PetscInt rows, PetscInt n, const Pe
   if (!f->rank && !f->failed) DatasetPut(f, name, H5T_NATIVE_DOUBLE, 2, size, values);
 }
 
+void H5PutWhole(H5File *f, const char name[], PetscInt n, const PetscInt values[]) {
+  const hsize_t size = (hsize_t)n;
+  if (!f->rank && !f->failed) DatasetPut(f, name, AttributeIntType(), 1, &size, values);
+}
+
 static void AttributePutString(H5File *f, const char name[], const char value[]) {
   hid_t type;
   if (f->rank || f->failed) return;

@@ -56,8 +56,9 @@ PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt 
 PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
 PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **value);
 
-/* H5PutRows - a dataset values[rows][n] of rank 0 that does not grow. Not collective. */
+/* H5PutRows, H5PutWhole - a dataset values[rows][n] or values[n] of rank 0 that does not grow. Not collective. */
 PETSC_EXTERN void H5PutRows(H5File *file, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]);
+PETSC_EXTERN void H5PutWhole(H5File *file, const char name[], PetscInt n, const PetscInt values[]);
 
 /* H5CheckLinks - whether the file itself holds all that its names stand for: a link to another file or name makes
    `plain` false. A file with a right checksum need not be one that petves wrote. Collective. */

@@ -34,15 +34,12 @@ static PetscErrorCode OutputBeginFiles(Output o) {
    found good. */
 static PetscErrorCode OutputGoOn(Output o, PetscInt frames) {
   const char *restart = o->scene->output.restart;
-  PetscReal *markers;
   PetscFunctionBeginUser;
   PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart));
   PetscCall(OutputClearFolder(o));
   PetscCall(FramesGoOn(&o->frames, &o->folder, o->scheme, frames, restart));
   PetscCall(VesicleFileGoOn(&o->vesicles, &o->folder, o->scheme, o->scheme->state.step, restart));
-  PetscCall(FramesMarkers(&o->frames, &markers));
-  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.file.time, markers));
-  PetscCall(PetscFree(markers));
+  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.file.time));
   PetscCall(SeriesOpen(&o->series));
   PetscCall(CheckpointAdopt(&o->checkpoint, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,7 +112,7 @@ static PetscErrorCode OutputWriteFrame(Output o, PetscBool scheduled) {
   PetscCall(FramesWrite(&o->frames, &o->now, scheduled));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
   PetscCall(AppendedFlush(&o->vesicles, PETSC_FALSE));
-  PetscCall(XdmfWrite(&o->xdmf, o->frames.file.count - 1, o->frames.time, o->now.part[GATHERED_MARKERS].values));
+  PetscCall(XdmfWrite(&o->xdmf, o->frames.file.count - 1, o->frames.time));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* open_memstream */
 #include "output/xdmf.h"
+#include "output/frames.h"
 #include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -9,142 +10,115 @@
 #define XDMF_COUNT_WIDTH 10
 #define XDMF_CLOSING "</Grid>\n</Domain></Xdmf>\n"
 
-/* A part of a dataset of run.h5: rows first .. first + n - 1 and columns column .. column + columns - 1 of an entry. */
+/* The entry of one frame in a series of run.h5: n rows of `columns` columns from `column` on. */
 typedef struct {
   const char *name;
-  int bytes;                /* bytes of a number */
-  PetscInt frame;           /* -1: the dataset is no series, but one entry */
-  PetscInt first, n, all;   /* rows; all: of an entry */
-  PetscInt column, columns; /* columns */
-  PetscInt width;           /* columns of an entry; 0: an entry is a list */
+  int bytes; /* bytes of a number */
+  PetscInt frame, n, column, columns;
+  PetscInt width; /* columns of an entry; 0: an entry is a list */
 } XdmfSlab;
 
-/* Print a slab as an XDMF item with the dimensions before, n, columns. */
+/* Print a slab as an XDMF item with the dimensions before, n, columns. VTK keeps the points of a grid under the name of
+   the comment, which is different for each slab. */
 static void PrintSlab(FILE *f, const char before[], const XdmfSlab *s) {
-  const PetscInt start[3] = {s->frame, s->first, s->column}, count[3] = {1, s->n, s->columns};
-  const int from = s->frame < 0 ? 1 : 0, end = s->width ? 3 : 2;
+  const PetscInt start[3] = {s->frame, 0, s->column}, count[3] = {1, s->n, s->columns};
+  const int end = s->width ? 3 : 2;
   fprintf(f, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%s%d", before, (int)s->n);
   if (s->columns > 1) fprintf(f, " %d", (int)s->columns);
-  fprintf(f, "\"><DataItem Dimensions=\"3 %d\" Format=\"XML\">", end - from);
+  fprintf(f, "\"><!-- %s %d --><DataItem Dimensions=\"3 %d\" Format=\"XML\">", s->name, (int)s->frame, end);
   for (int row = 0; row < 3; row++) /* starts, strides, counts */
-    for (int d = from; d < end; d++)
-      fprintf(f, "%s%d", row || d > from ? " " : "", row == 1 ? 1 : (int)(row ? count : start)[d]);
-  fprintf(f, "</DataItem><DataItem Dimensions=\"%s%d", from ? "" : "&frames; ", (int)s->all);
+    for (int d = 0; d < end; d++) fprintf(f, "%s%d", row || d ? " " : "", row == 1 ? 1 : (int)(row ? count : start)[d]);
+  fprintf(f, "</DataItem><DataItem Dimensions=\"&frames; %d", (int)s->n);
   if (s->width) fprintf(f, " %d", (int)s->width);
   fprintf(f, "\" NumberType=\"Float\" Precision=\"%d\" Format=\"HDF\">run.h5:%s</DataItem></DataItem>\n", s->bytes,
           s->name);
 }
 
+/* Print two slabs as the x and y of a vector field with the dimensions dims. */
+static void PrintVector(FILE *f, const char name[], const char dims[], const char before[], const XdmfSlab part[2]) {
+  fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"Vector\" Center=\"Node\">\n", name);
+  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%s 3\">\n", dims);
+  for (int c = 0; c < 2; c++) PrintSlab(f, before, &part[c]);
+  fprintf(f, "</DataItem></Attribute>\n");
+}
+
 /* Values at cell centres are the nodes of a grid of one layer: readers put a two-dimensional grid into the y-z plane.
  */
 static void PrintFluid(Grid g, FILE *f, PetscInt t, int bytes) {
-  const int nx = (int)g->n[0], ny = (int)g->n[1];
-  XdmfSlab cells = {.name = "/fluid/p", .bytes = bytes, .frame = t, .n = ny, .all = ny, .columns = nx, .width = nx};
-  fprintf(
-      f, "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"1 %d %d\"/>\n",
-      ny, nx);
+  const PetscInt nx = g->n[0], ny = g->n[1];
+  const XdmfSlab p = {"/fluid/p", bytes, t, ny, 0, nx, nx}, u = {"/fluid/u", bytes, t, ny, 0, nx, nx},
+                 v = {"/fluid/v", bytes, t, ny, 0, nx, nx};
+  char dims[64];
+  (void)snprintf(dims, sizeof(dims), "1 %d %d", (int)ny, (int)nx);
+  fprintf(f, "<Grid Name=\"fluid\" GridType=\"Uniform\"><Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"%s\"/>\n",
+          dims);
   fprintf(f, "<Geometry GeometryType=\"ORIGIN_DXDYDZ\"><DataItem Dimensions=\"3\">0 %.17g %.17g</DataItem>",
           (double)(g->lo[1] + g->h / 2), (double)(g->lo[0] + g->h / 2));
   fprintf(f, "<DataItem Dimensions=\"3\">%.17g %.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h,
           (double)g->h);
   fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Node\">\n");
-  PrintSlab(f, "1 ", &cells);
-  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">\n");
-  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"1 %d %d 3\">\n", ny, nx);
-  cells.name = "/fluid/u";
-  PrintSlab(f, "1 ", &cells);
-  cells.name = "/fluid/v";
-  PrintSlab(f, "1 ", &cells);
-  fprintf(f, "</DataItem></Attribute></Grid>\n");
+  PrintSlab(f, "1 ", &p);
+  fprintf(f, "</Attribute>\n");
+  PrintVector(f, "velocity", dims, "1 ", (XdmfSlab[]){u, v});
+  fprintf(f, "</Grid>\n");
 }
 
-/* Print the two columns of a slab as items of their own. */
-static void PrintColumns(FILE *f, XdmfSlab s) {
-  s.columns = 1;
-  for (s.column = 0; s.column < 2; s.column++) PrintSlab(f, "", &s);
+/* Print a list of whole numbers of run.h5. */
+static void PrintWhole(FILE *f, PetscInt n, const char kind[], const char name[]) {
+  fprintf(f, "<DataItem Dimensions=\"%d\" NumberType=\"Int\" Precision=\"%d\" Format=\"HDF\">run.h5:/%s/%s</DataItem>",
+          (int)n, (int)sizeof(PetscInt), kind, name);
 }
 
-/* Print the markers of one body, shifted. */
-static void PrintMarkers(FILE *f, const XdmfSlab *markers, const PetscReal shift[2]) {
-  if (!shift[0] && !shift[1]) {
-    PrintSlab(f, "", markers);
-    return;
-  }
-  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0 + (%.17g), $1 + (%.17g))\" Dimensions=\"%d 2\">\n",
-          (double)shift[0], (double)shift[1], (int)markers->n);
-  PrintColumns(f, *markers);
-  fprintf(f, "</DataItem>\n");
+/* Print the lines through the markers of all bodies of a kind, up to the beginning of their geometry. */
+static void PrintLines(FILE *f, const char kind[], Layout l, PetscInt closed) {
+  fprintf(f, "<Grid Name=\"%s\" GridType=\"Uniform\"><Topology TopologyType=\"Mixed\" NumberOfElements=\"%d\">", kind,
+          (int)l->bodies);
+  PrintWhole(f, l->M + 2 * l->bodies + closed, kind, "lines");
+  fprintf(f, "</Topology>\n<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Cell\">", kind);
+  PrintWhole(f, l->bodies, kind, "number");
+  fprintf(f, "</Attribute>\n<Geometry GeometryType=\"XY\">\n");
 }
 
-/* Whole periods that bring the middle of a body with these n markers into the box. */
-static void ShiftIntoBox(Grid g, PetscInt n, const PetscReal X[], PetscReal shift[2]) {
-  for (int d = 0; d < 2; d++) {
-    const PetscReal period = g->hi[d] - g->lo[d];
-    PetscReal middle = 0;
-    for (PetscInt k = 0; k < n; k++) middle += X[2 * k + d] / n;
-    shift[d] = g->wall[d] || g->free ? 0 : -period * PetscFloorReal((middle - g->lo[d]) / period);
-  }
-}
-
-/* Print the line through a body's n points, closed or not, up to the beginning of its geometry. */
-static void PrintLine(FILE *f, const char what[], PetscInt number, PetscInt n, PetscBool closed) {
-  fprintf(f, "<Grid Name=\"%s %d\" GridType=\"Uniform\">", what, (int)number);
-  fprintf(f,
-          "<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" NodesPerElement=\"%d\"><DataItem "
-          "Dimensions=\"1 %d\" NumberType=\"Int\">",
-          (int)(n + closed), (int)(n + closed));
-  for (PetscInt k = 0; k < n + (PetscInt)closed; k++) fprintf(f, "%d ", (int)(k % n));
-  fprintf(f, "</DataItem></Topology>\n<Geometry GeometryType=\"XY\">\n");
-}
-
-/* Print the number of a body, and the end of its grid. */
-static void PrintNumber(FILE *f, const char what[], PetscInt number) {
-  fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Cell\">", what);
-  fprintf(f, "<DataItem Dimensions=\"1\" NumberType=\"Int\">%d</DataItem></Attribute></Grid>\n", (int)number);
-}
-
-static void PrintObstacle(Scheme s, FILE *f, PetscInt t, PetscReal time, PetscInt v) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  const Layout l = o->layout;
-  const PetscInt n = LayoutCount(l, v);
-  const ObstaclePose pose = ObstaclesPose(o, v, time);
-  const XdmfSlab force = {"/obstacle/force", 8, t, l->start[v], n, l->M, 0, 2, 2};
-  XdmfSlab markers = force;
-  PetscReal shift[2] = {0, 0};
-  markers.name = "/obstacle/markers";
-  if (!s->scene->obstacles.moving) markers.frame = -1;
-  PrintLine(f, "obstacle", v + 1, n, o->kind[v].type == CURVE_CLOSED ? PETSC_TRUE : PETSC_FALSE);
-  if (o->motion[v].carried) ShiftIntoBox(s->fluid->grid, 1, pose.center, shift);
-  PrintMarkers(f, &markers, shift);
-  fprintf(f, "</Geometry>\n<Attribute Name=\"force\" AttributeType=\"Vector\" Center=\"Node\">\n");
-  fprintf(f, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%d 3\">\n", (int)n);
-  PrintColumns(f, force);
-  fprintf(f, "</DataItem></Attribute>\n");
-  PrintNumber(f, "obstacle", v + 1);
-}
-
-static void PrintVesicle(Scheme s, FILE *f, PetscInt t, PetscInt v, const PetscReal X[]) {
-  const Layout l = s->membrane->layout;
-  const PetscInt first = l->start[v], n = LayoutCount(l, v);
-  const XdmfSlab markers = {"/vesicle/markers", 8, t, first, n, l->M, 0, 2, 2};
-  const XdmfSlab tension = {"/vesicle/tension", 8, t, first, n, l->M, 0, 1, 0};
-  PetscReal shift[2];
-  ShiftIntoBox(s->fluid->grid, n, X + 2 * first, shift);
-  PrintLine(f, "vesicle", v + 1, n, PETSC_TRUE);
-  PrintMarkers(f, &markers, shift);
+static void PrintVesicles(FILE *f, PetscInt t, Layout l, PetscBool wrapped) {
+  const XdmfSlab markers = {wrapped ? "/vesicle/wrapped" : "/vesicle/markers", 8, t, l->M, 0, 2, 2};
+  const XdmfSlab tension = {"/vesicle/tension", 8, t, l->M, 0, 1, 0};
+  PrintLines(f, "vesicle", l, l->bodies);
+  PrintSlab(f, "", &markers);
   fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
   PrintSlab(f, "", &tension);
-  fprintf(f, "</Attribute>\n");
-  PrintNumber(f, "vesicle", v + 1);
+  fprintf(f, "</Attribute></Grid>\n");
 }
 
-static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const PetscReal X[]) {
+/* Obstacles that rest have one entry of markers, no series. */
+static void PrintObstacles(FILE *f, PetscInt t, Obstacles o, PetscBool moving, PetscBool wrapped) {
+  const PetscInt W = o->layout->M;
+  const XdmfSlab markers = {wrapped ? "/obstacle/wrapped" : "/obstacle/markers", 8, t, W, 0, 2, 2};
+  const XdmfSlab x = {"/obstacle/force", 8, t, W, 0, 1, 2}, y = {"/obstacle/force", 8, t, W, 1, 1, 2};
+  PetscInt closed = 0;
+  char dims[32];
+  for (PetscInt v = 0; v < o->layout->bodies; v++) closed += o->kind[v].type == CURVE_CLOSED;
+  (void)snprintf(dims, sizeof(dims), "%d", (int)W);
+  PrintLines(f, "obstacle", o->layout, closed);
+  if (moving)
+    PrintSlab(f, "", &markers);
+  else
+    fprintf(f,
+            "<DataItem Dimensions=\"%s 2\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">run.h5:/obstacle/markers"
+            "</DataItem>",
+            dims);
+  fprintf(f, "</Geometry>\n");
+  PrintVector(f, "force", dims, "", (XdmfSlab[]){x, y});
+  fprintf(f, "</Grid>\n");
+}
+
+static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time) {
   const Obstacles solids = s->coupling->bodies->obstacles;
+  const PetscBool wrapped = FramesAreWrapped(s);
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
-  for (PetscInt v = 0; v < s->membrane->layout->bodies; v++) PrintVesicle(s, f, t, v, X);
-  for (PetscInt v = 0; solids && v < solids->layout->bodies; v++) PrintObstacle(s, f, t, time, v);
+  if (s->membrane->layout->M) PrintVesicles(f, t, s->membrane->layout, wrapped);
+  if (solids) PrintObstacles(f, t, solids, s->scene->obstacles.moving, wrapped);
   fprintf(f, "</Grid>\n");
 }
 
@@ -152,7 +126,7 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time, const Pets
 typedef struct {
   Scheme scheme;
   PetscInt frames;
-  const PetscReal *times, *markers; /* [frames], [frames][2 M] */
+  const PetscReal *times; /* [frames] */
   off_t *last, *end;
 } XdmfDocument;
 
@@ -162,15 +136,15 @@ static PetscErrorCode PrintDocument(FILE *f, const void *what) {
   fprintf(f, "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   for (PetscInt t = 0; t < d->frames; t++) {
     *d->last = ftello(f);
-    PrintFrame(d->scheme, f, t, d->times[t], d->markers + 2 * t * d->scheme->membrane->layout->M);
+    PrintFrame(d->scheme, f, t, d->times[t]);
   }
   *d->end = ftello(f);
   fprintf(f, XDMF_CLOSING);
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[], const PetscReal markers[]) {
-  const XdmfDocument document = {x->scheme, frames, times, markers, &x->last, &x->end};
+PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[]) {
+  const XdmfDocument document = {x->scheme, frames, times, &x->last, &x->end};
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
   PetscCall(FolderWriteText(x->folder, "run.xmf", PrintDocument, &document));
@@ -200,14 +174,14 @@ static PetscBool XdmfOverwrite(int file, off_t place, const char text[], size_t 
 }
 
 /* Rank 0's part of XdmfWrite. The number of frames is written first: run.h5 has as many frames already. */
-static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time, const PetscReal X[]) {
+static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time) {
   const off_t place = frame < x->frames ? x->last : x->end;
   char count[XDMF_COUNT_WIDTH + 8], *text = NULL;
   size_t size = 0;
   FILE *f = open_memstream(&text, &size);
   PetscBool done = PETSC_FALSE;
   if (!f) return PETSC_FALSE;
-  PrintFrame(x->scheme, f, frame, time, X);
+  PrintFrame(x->scheme, f, frame, time);
   fprintf(f, XDMF_CLOSING);
   if (!fclose(f)) {
     (void)snprintf(count, sizeof(count), "%*d", XDMF_COUNT_WIDTH, (int)frame + 1);
@@ -221,15 +195,15 @@ static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time, const Petsc
   return done;
 }
 
-PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time, const PetscReal markers[]) {
+PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time) {
   PetscFunctionBeginUser;
   PetscCheck(frame == x->frames || frame == x->frames - 1, x->folder->comm, PETSC_ERR_PLIB,
              "frame %" PetscInt_FMT " of run.xmf after %" PetscInt_FMT, frame, x->frames);
   if (!x->frames) {
-    PetscCall(XdmfGoOn(x, 1, &time, markers));
+    PetscCall(XdmfGoOn(x, 1, &time));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(FolderCheck(x->folder, x->folder->rank || XdmfAppend(x, frame, time, markers), "run.xmf"));
+  PetscCall(FolderCheck(x->folder, x->folder->rank || XdmfAppend(x, frame, time), "run.xmf"));
   x->frames = frame + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

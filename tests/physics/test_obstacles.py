@@ -115,17 +115,14 @@ def test_files_have_the_curves(tmp_path):
     data = petves.load(tmp_path, "xarray")
     assert data.obstacles.units == "length" and data.obstacle_torque_2.units == "length^4/time^2"
     assert list(np.bincount(data.obstacle)) == [len(points) for points in curves]
-    root, rows = ET.parse(tmp_path / "run.xmf").getroot(), []
     with h5py.File(tmp_path / "run.h5") as file:
-        for item in root.iter("DataItem"):
-            parts = list(item)
-            if len(parts) == 2 and (parts[1].text or "").strip() == "run.h5:/obstacle/markers":
-                start, _, count = np.array(parts[0].text.split(), int).reshape(3, 2)
-                assert file["obstacle/markers"].shape == tuple(int(n) for n in parts[1].get("Dimensions").split())
-                rows.append(file["obstacle/markers"][start[0] : start[0] + count[0]])
-    assert len(rows) == 2 * len(list(root.iter("Time"))), "both in each frame"
-    for own, other in zip(rows, 3 * curves):
-        np.testing.assert_array_equal(own, other)
+        lines, at = file["obstacle/lines"][:], 0
+        for points, first in zip(curves, (0, len(curves[0]))):  # a polyline of VTK, which closes
+            assert list(lines[at : at + 2]) == [2, len(points) + 1] and lines[at + 2 + len(points)] == first
+            np.testing.assert_array_equal(lines[at + 2 : at + 2 + len(points)], first + np.arange(len(points)))
+            at += 3 + len(points)
+        assert at == len(lines) and list(file["obstacle/number"]) == [1, 2]
+        np.testing.assert_array_equal(file["obstacle/markers"], np.concatenate(curves))
     with h5py.File(tmp_path / "run.h5") as file:
         forces = np.split(file["obstacle/force"][-1], [len(curves[0])])
     for points, force, turn in zip(curves, forces, (-1, 1)):
@@ -134,7 +131,8 @@ def test_files_have_the_curves(tmp_path):
             turn * (x * force[:, 1] - y * force[:, 0]) > 0
         ).all(), "each at its marker: against the turn, and with it"
     text = (tmp_path / "run.xmf").read_text()
-    assert text.count("run.h5:/obstacle/force") == 2 * len(rows), "x and y of both in each frame"
+    for name, each in (("force", 2), ("markers", 1), ("lines", 1), ("number", 1)):  # x and y of the force apart
+        assert text.count(f"run.h5:/obstacle/{name}") == each * text.count("<Time"), name
     page = report(tmp_path).read_text()
     solids = json.loads(re.search(r'id="data" type="application/json">(.*?)</script>', page, re.S)[1])["solids"]
     assert len(solids) == 3, "a frame around the box, and both circles"

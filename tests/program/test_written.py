@@ -59,7 +59,7 @@ def test_single_precision(tmp_path):
         np.testing.assert_allclose(others[name], exact[name], rtol=1e-6, atol=1e-7 * np.abs(exact[name]).max())
     assert (one.folder / "run.h5").stat().st_size < 0.62 * (double.folder / "run.h5").stat().st_size
     text = (one.folder / "run.xmf").read_text()
-    assert text.count('Precision="4"') == 3 * 4 and text.count('Precision="8"') == 2 * 4
+    assert text.count('"Float" Precision="4"') == 3 * 4 and text.count('"Float" Precision="8"') == 2 * 4
 
 
 def test_single_precision_after_a_kill(tmp_path):

@@ -230,7 +230,7 @@ json.dump(dict(times=times, frames=frames), sys.stdout)
 """
     words = [sys.executable, "-c", script, str(SITE), str(folder / "run.xmf")]
     done = subprocess.run(words, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0 and not done.stderr, done.stderr
     seen, run = json.loads(done.stdout), Run.read(folder)
     np.testing.assert_array_equal(seen["times"], run.time)
     x, y = run.cell_centers()
