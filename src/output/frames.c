@@ -1,5 +1,10 @@
 #include "output/frames.h"
 #include "output/cells.h"
+#include "base/version.h"
+
+#define ABOUT                                                                                                          \
+  "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the disturbance (without "    \
+  "that of the background flow) unless -flow_form total; tension k "
 
 /* The ratios of viscosities, unless all are 1. */
 static PetscErrorCode FramesPutRatios(H5File *f, Scene scene) {
@@ -68,9 +73,11 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
   if (l->bodies) PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
   PetscCall(FramesPutRatios(f, scene));
   PetscCall(FramesPutObstacles(f, &scene->obstacles, s->coupling->bodies->obstacles));
+  H5PutText(f, "version", PETVES_VERSION);
+  H5PutText(f, "git_commit", PetvesCommit());
   H5PutText(f, "about",
-            "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the "
-            "disturbance unless -flow_form total; tension k on the edge from marker k-1 to marker k");
+            scene->membrane.derivative == DERIVATIVE_SPECTRAL ? ABOUT "at marker k"
+                                                              : ABOUT "on the edge from marker k-1 to marker k");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

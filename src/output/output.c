@@ -63,7 +63,7 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   o->xdmf = (Xdmf){.folder = &o->folder, .scheme = scheme, .file = -1};
   PetscCall(o->go_on ? OutputGoOn(o, frames) : OutputBeginFiles(o));
   PetscCall(SummaryResolved(&o->folder, scheme));
-  ProgressStart(&o->progress, scene->comm);
+  ProgressStart(&o->progress, scene->comm, scheme->state.t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,12 +6,15 @@
 #include <hdf5.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
 
 /* Seconds between progress lines. */
 #define PROGRESS_SECONDS 2
 
-void ProgressStart(Progress *p, MPI_Comm comm) {
+void ProgressStart(Progress *p, MPI_Comm comm, PetscReal t) {
   p->comm = comm;
+  p->from = t;
   (void)MPI_Comm_rank(comm, &p->rank);
   (void)PetscTime(&p->start);
   p->printed = p->start;
@@ -25,15 +28,14 @@ PetscReal ProgressSeconds(const Progress *p) {
 
 void ProgressLine(Progress *p, const State *q, PetscReal t_end, PetscBool force) {
   PetscLogDouble now;
-  PetscReal share, left;
+  PetscReal left;
   if (p->rank || PetvesIsQuiet()) return;
   (void)PetscTime(&now);
   if (!force && now - p->printed < PROGRESS_SECONDS) return;
   p->printed = now;
-  share = t_end > 0 ? PetscMin(1, q->t / t_end) : 1;
-  left = share > 0 ? (now - p->start) * (1 - share) / share : 0;
-  printf("step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step, (double)q->t, 100 * (double)share,
-         left);
+  left = q->t > p->from ? (now - p->start) * PetscMax(0, t_end - q->t) / (q->t - p->from) : 0;
+  printf("step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step, (double)q->t,
+         t_end > 0 ? 100 * PetscMin(1, (double)(q->t / t_end)) : 100, (double)left);
   fflush(stdout);
 }
 
@@ -209,6 +211,18 @@ typedef struct {
   PetscMPIInt ranks;
 } Summary;
 
+/* Print when and where the run ended. */
+static void JsonPrintOrigin(FILE *f) {
+  char host[128] = "", date[32] = "";
+  const time_t now = time(NULL);
+  struct tm utc;
+  (void)gethostname(host, sizeof(host) - 1);
+  (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+  fprintf(f, "  \"ended\": \"%s\",\n  \"host\": ", date);
+  JsonPrintString(f, host);
+  fprintf(f, ",\n");
+}
+
 static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   const Summary *s = what;
   const Record *r = s->record;
@@ -231,6 +245,7 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   JsonPrintRatios(f, s->scheme->scene);
   JsonPrintInertia(f, s->scheme->scene, r->cfl_max);
   JsonPrintWarnings(f, &s->scheme->warnings);
+  JsonPrintOrigin(f);
   JsonPrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());
   return PETSC_SUCCESS;

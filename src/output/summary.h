@@ -8,12 +8,14 @@
 typedef struct {
   MPI_Comm comm;
   PetscMPIInt rank;
+  PetscReal from;                /* simulated time at the start */
   PetscLogDouble start, printed; /* wall time at the start and at the last progress line */
 } Progress;
 
-/* ProgressStart - the run starts now. ProgressSeconds - wall seconds since the start. ProgressLine - print step, time,
-   percent of t_end and the time that is left, at most every few seconds unless `force`. Not collective. */
-PETSC_EXTERN void ProgressStart(Progress *progress, MPI_Comm comm);
+/* ProgressStart - the run starts now, at the simulated time t. ProgressSeconds - wall seconds since the start.
+   ProgressLine - print step, time, percent of t_end and the time that is left, at most every few seconds unless
+   `force`. Not collective. */
+PETSC_EXTERN void ProgressStart(Progress *progress, MPI_Comm comm, PetscReal t);
 PETSC_EXTERN PetscReal ProgressSeconds(const Progress *progress);
 PETSC_EXTERN void ProgressLine(Progress *progress, const State *state, PetscReal t_end, PetscBool force);
 

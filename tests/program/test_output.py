@@ -110,7 +110,15 @@ def test_run_xmf_refers_to_what_is_there(run):
                 shape = np.array(data.get("Dimensions").split(), dtype=int)
                 assert (start + stride * (count - 1) < shape).all() and (count > 0).all()
                 assert np.prod(count) == np.prod([int(n) for n in item.get("Dimensions").split()])
-    assert names == {"/fluid/u", "/fluid/v", "/fluid/p", "/vesicle/wrapped", "/vesicle/tension", "/vesicle/lines", "/vesicle/number"}
+    assert names == {
+        "/fluid/u",
+        "/fluid/v",
+        "/fluid/p",
+        "/vesicle/wrapped",
+        "/vesicle/tension",
+        "/vesicle/lines",
+        "/vesicle/number",
+    }
 
 
 def test_checkpoint_holds_the_state(run):
