@@ -1,6 +1,8 @@
 #include "mobility/boxpart.h"
 #include "base/lanes.h"
 
+#define AT_ONCE 64 /* markers */
+
 PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
   PetscFunctionBeginUser;
@@ -9,12 +11,10 @@ PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLa
   b->spec = spec;
   b->lattice = *lattice;
   b->markers = markers;
-  b->ramp = spec->inertia == INERTIA_NONE ? PETSC_FALSE : PETSC_TRUE;
+  b->ramp = spec->inertia == INERTIA_NONE || lattice->dipole ? PETSC_FALSE : PETSC_TRUE;
   for (int d = 0; d < 2; d++)
     b->axis[d] = BoxAxisOfGrid(markers->grid->wall[d], markers->grid->lo[d], markers->grid->hi[d]);
   PetscCall(PetvesEvent("BoxTable", &b->make));
-  PetscCall(PetscMalloc1(2 * markers->layout->n, &b->X));
-  for (PetscInt k = 0; k < 2 * markers->layout->n; k++) b->X[k] = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -23,8 +23,7 @@ PetscErrorCode BoxPartDestroy(BoxPart *box) {
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < 2; k++) PetscCall(BoxTableDestroy(&b->table[k]));
-  PetscCall(PetscFree2(b->A, b->amplitude));
-  PetscCall(PetscFree(b->X));
+  PetscCall(PetscFree3(b->value, b->function, b->amplitude));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -39,13 +38,7 @@ static PetscReal Fade(BoxPart b, const PetscReal X[2]) {
   return fade;
 }
 
-/* The rows A[2][rank] of marker k, from its functions' values. */
-static void BoxPartPlaceMarker(BoxPart b, PetscInt k, PetscReal A[]) {
-  const PetscReal *X = b->markers->X + 2 * k;
-  BoxTableRows(b->at, X, Fade(b, X), 0, 2, A);
-}
-
-/* Whether a box has walls and all markers are in its middle half. */
+/* Whether sources are forces, and all markers are in the middle half of a box with walls. */
 static PetscBool AreInMiddle(BoxPart b) {
   const Grid g = b->markers->grid;
   for (int d = 0; d < 2; d++) {
@@ -55,12 +48,11 @@ static PetscBool AreInMiddle(BoxPart b) {
       if (x < g->lo[d] + quarter || x > g->hi[d] - quarter) return PETSC_FALSE;
     }
   }
-  return g->wall[0] || g->wall[1] ? PETSC_TRUE : PETSC_FALSE;
+  return (g->wall[0] || g->wall[1]) && !b->lattice.dipole ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The table that reaches all markers, made when it is first needed. */
-static PetscErrorCode BoxPartTakeTable(BoxPart b, PetscBool *moved) {
-  const Layout l = b->markers->layout;
+/* The table that reaches all markers, made when it is first needed, and room for what the markers have of it. */
+static PetscErrorCode BoxPartTakeTable(BoxPart b) {
   const PetscBool middle = AreInMiddle(b);
   BoxTable *t = &b->table[middle];
   PetscFunctionBeginUser;
@@ -69,71 +61,150 @@ static PetscErrorCode BoxPartTakeTable(BoxPart b, PetscBool *moved) {
     PetscCall(BoxTableCreate(b->spec, b->markers->kernel->name, &b->lattice, middle, t));
     PetscCall(PetscLogEventEnd(b->make, 0, 0, 0, 0));
   }
-  *moved = b->at == t ? PETSC_FALSE : PETSC_TRUE;
+  if (b->at == t) PetscFunctionReturn(PETSC_SUCCESS);
   b->at = t;
-  if (b->at->rank <= b->room) PetscFunctionReturn(PETSC_SUCCESS);
-  b->room = b->at->rank;
-  PetscCall(PetscFree2(b->A, b->amplitude));
-  PetscCall(PetscMalloc2(2 * l->n * b->room, &b->A, b->room, &b->amplitude));
+  b->width = (t->functions[1] + LANES - 1) / LANES * LANES;
+  PetscCall(PetscFree3(b->value, b->function, b->amplitude));
+  PetscCall(PetscCalloc3(b->markers->layout->n * (t->functions[0] + b->width), &b->value,
+                         t->components * t->functions[0] * b->width, &b->function, t->rank, &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Own marker k's values of the functions of x, with the part of D that it has; those of y come behind. */
+static PetscReal *BoxValues(BoxPart b, PetscInt k) {
+  return b->value + k * (b->at->functions[0] + b->width);
+}
+
+/* A component's functions. */
+static PetscReal *BoxFunctions(BoxPart b, int component) {
+  return b->function + component * b->at->functions[0] * b->width;
 }
 
 PetscErrorCode BoxPartPlace(BoxPart b) {
   const Layout l = b->markers->layout;
-  PetscBool moved = PETSC_FALSE;
   PetscFunctionBeginUser;
-  PetscCall(BoxPartTakeTable(b, &moved));
+  PetscCall(BoxPartTakeTable(b));
   for (PetscInt k = 0; k < l->n; k++) {
-    const PetscReal *now = b->markers->X + 2 * (l->first + k), *then = b->X + 2 * k;
-    if (!moved && now[0] == then[0] && now[1] == then[1]) continue; /* at rest, on an obstacle */
-    BoxPartPlaceMarker(b, l->first + k, b->A + 2 * k * b->at->rank);
-    b->X[2 * k] = now[0];
-    b->X[2 * k + 1] = now[1];
+    const PetscReal *X = b->markers->X + 2 * (l->first + k), fade = Fade(b, X);
+    PetscReal *value = BoxValues(b, k);
+    BoxTableFunctions(b->at, 0, X[0], value);
+    BoxTableFunctions(b->at, 1, X[1], value + b->at->functions[0]);
+    for (PetscInt i = 0; i < b->at->functions[0]; i++) value[i] *= fade;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
-  const Layout l = b->markers->layout;
-  const PetscInt r = b->at->rank;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(b->amplitude, r));
-  for (PetscInt k = 0; k < 2 * l->n; k++)
-    for (PetscInt m = 0; m < r; m++) b->amplitude[m] += b->A[k * r + m] * F[k];
-  if (l->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)r, MPIU_REAL, MPI_SUM, l->comm));
-  for (PetscInt m = 0; m < r; m++) b->amplitude[m] *= alpha * b->at->l[m];
-  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += LanesDot(r, b->amplitude, b->A + k * r);
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* A component's functions += the parts of markers k .. k + count - 1, in `vectors` columns of vectors from the j-th
+   number on. The sums stay in registers. */
+static inline void GatherColumns(const int vectors, BoxPart b, int component, PetscInt k, PetscInt count, PetscInt j,
+                                 const PetscReal part[]) {
+  const PetscInt nx = b->at->functions[0], size = nx + b->width;
+  PetscReal *f = BoxFunctions(b, component) + j;
+  for (PetscInt i = 0; i < nx; i++, f += b->width) {
+    const PetscReal *x = BoxValues(b, k) + i, *y = BoxValues(b, k) + nx + j;
+    Lanes sum[4];
+    for (int q = 0; q < vectors; q++) sum[q] = LanesAt(f + q * LANES);
+    for (PetscInt m = 0; m < count; m++, x += size, y += size) {
+      const PetscReal scale = part[m] * x[0];
+      for (int q = 0; q < vectors; q++) sum[q] += scale * LanesAt(y + q * LANES);
+    }
+    for (int q = 0; q < vectors; q++) LanesPut(sum[q], f + q * LANES);
+  }
 }
 
-/* Rows of A of the markers in a range: the own ones, or made here and to be freed. */
-static PetscErrorCode RangeRows(BoxPart b, const MarkerRange *range, PetscReal **rows, PetscBool *made) {
+/* The own markers' sources in the functions. */
+static void BoxGather(BoxPart b, const PetscReal F[]) {
+  const PetscInt n = b->markers->layout->n, parts = b->at->parts;
+  PetscReal part[AT_ONCE];
+  (void)PetscArrayzero(BoxFunctions(b, b->at->source), parts * b->at->functions[0] * b->width);
+  for (PetscInt k = 0; k < n; k += AT_ONCE)
+    for (int c = 0; c < parts; c++) {
+      const PetscInt count = PetscMin(AT_ONCE, n - k);
+      PetscInt j = 0;
+      for (PetscInt m = 0; m < count; m++) part[m] = F[parts * (k + m) + c];
+      for (; j + 4 * LANES <= b->width; j += 4 * LANES) GatherColumns(4, b, b->at->source + c, k, count, j, part);
+      for (; j < b->width; j += LANES) GatherColumns(1, b, b->at->source + c, k, count, j, part);
+    }
+}
+
+/* SUM x_i SUM f_ij y_j over `vectors` columns of vectors, at most 4. */
+static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt width, const PetscReal x[],
+                                   const PetscReal y[], const PetscReal f[]) {
+  Lanes column[4], sum[4] = {{0}, {0}, {0}, {0}};
+  for (int q = 0; q < vectors; q++) column[q] = LanesAt(y + q * LANES);
+  for (PetscInt i = 0; i < nx; i++, f += width)
+    for (int q = 0; q < vectors; q++) sum[q] += x[i] * LanesAt(f + q * LANES);
+  for (int q = 0; q < vectors; q++) sum[q] *= column[q];
+  for (int q = 1; q < vectors; q++) sum[0] += sum[q];
+  return sum[0];
+}
+
+/* Velocity component c of own marker k. */
+static PetscReal BoxScatter(BoxPart b, PetscInt k, int c) {
+  const PetscInt nx = b->at->functions[0];
+  const PetscReal *x = BoxValues(b, k), *y = x + nx, *f = BoxFunctions(b, c);
+  PetscInt j = 0;
+  Lanes sum = {0};
+  for (; j + 4 * LANES <= b->width; j += 4 * LANES) sum += ScatterColumns(4, nx, b->width, x, y + j, f + j);
+  for (; j < b->width; j += LANES) sum += ScatterColumns(1, nx, b->width, x, y + j, f + j);
+  return LanesSum(sum);
+}
+
+/* Where component c's functions of a block begin. */
+static PetscReal *InBlock(BoxPart b, const BoxBlock *q, int c) {
+  return BoxFunctions(b, c) + q->first[c][0] * b->width + q->first[c][1];
+}
+
+/* A block's eigenvectors' amplitudes of the sources' functions. */
+static void ToAmplitudes(BoxPart b, const BoxBlock *q) {
+  PetscReal weight[DIPOLE_COUNT * BOX_BLOCK_FUNCTIONS], *w = weight;
+  for (int c = b->at->source; c < b->at->components; c++)
+    for (PetscInt i = 0; i < q->n[0]; i++)
+      for (PetscInt j = 0; j < q->n[1]; j++) *w++ = InBlock(b, q, c)[i * b->width + j];
+  BoxBlockSum(q, b->at->source, b->at->parts, weight, b->amplitude + q->start);
+}
+
+/* The velocities' functions of a block. */
+static void FromAmplitudes(BoxPart b, const BoxBlock *q) {
+  const PetscReal *Q = q->Q;
+  for (int c = 0; c < 2; c++)
+    for (PetscInt i = 0; i < q->n[0]; i++)
+      for (PetscInt j = 0; j < q->n[1]; j++, Q += q->modes)
+        InBlock(b, q, c)[i * b->width + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
+}
+
+PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
+  const BoxTable *t = b->at;
   const Layout l = b->markers->layout;
-  const PetscInt r = b->at->rank;
   PetscFunctionBeginUser;
-  *made = range->first < l->first || range->first + range->n > l->first + l->n ? PETSC_TRUE : PETSC_FALSE;
-  if (!*made)
-    *rows = b->A + 2 * (range->first - l->first) * r;
-  else
-    PetscCall(PetscMalloc1(2 * range->n * r, rows));
-  for (PetscInt k = 0; k < range->n && *made; k++) BoxPartPlaceMarker(b, range->first + k, *rows + 2 * k * r);
+  BoxGather(b, F);
+  for (PetscInt k = 0; k < t->blocks; k++) ToAmplitudes(b, &t->block[k]);
+  if (l->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)t->rank, MPIU_REAL, MPI_SUM, l->comm));
+  for (PetscInt m = 0; m < t->rank; m++) b->amplitude[m] *= alpha * t->l[m];
+  PetscCall(PetscArrayzero(b->function, 2 * t->functions[0] * b->width)); /* those of no block too */
+  for (PetscInt k = 0; k < t->blocks; k++) FromAmplitudes(b, &t->block[k]);
+  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += BoxScatter(b, k / 2, k % 2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BoxPartAdd(BoxPart b, PetscReal scale, const MarkerRange *rows, const MarkerRange *columns,
                           PetscReal out[]) {
+  const MarkerRange *range[] = {rows, columns};
   const Layout l = b->markers->layout;
   const PetscInt r = b->at->rank, begin = PetscMax(l->first, rows->first),
                  end = PetscMin(l->first + l->n, rows->first + rows->n);
-  PetscReal *x, *y;
-  PetscBool made[2];
+  PetscReal *vector[2]; /* what the markers of both ranges have of the eigenvectors */
   PetscFunctionBeginUser;
-  PetscCall(RangeRows(b, rows, &x, &made[0]));
-  PetscCall(RangeRows(b, columns, &y, &made[1]));
+  PetscCall(PetscMalloc2(2 * rows->n * r, &vector[0], 2 * columns->n * r, &vector[1]));
+  for (int q = 0; q < 2; q++)
+    for (PetscInt k = 0; k < range[q]->n; k++) {
+      const PetscReal *X = b->markers->X + 2 * (range[q]->first + k);
+      BoxTableRows(b->at, X, Fade(b, X), 0, 2, vector[q] + 2 * k * r);
+    }
   for (PetscInt j = 0; j < 2 * columns->n; j++)
     for (PetscInt i = 2 * (begin - rows->first); i < 2 * (end - rows->first); i++)
-      out[j * 2 * rows->n + i] += scale * BoxProduct(r, b->at->l, x + i * r, y + j * r);
-  if (made[0]) PetscCall(PetscFree(x));
-  if (made[1]) PetscCall(PetscFree(y));
+      out[j * 2 * rows->n + i] += scale * BoxProduct(r, b->at->l, vector[0] + i * r, vector[1] + j * r);
+  PetscCall(PetscFree2(vector[0], vector[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,11 +1,12 @@
-/* The box part of the near field: D takes the error of second order off what walls and periodic images add to the
-   markers' mobility (boxtable.h),
+/* The box part of a layer: D takes the error of second order off what walls and periodic images add to the velocities
+   that the markers' forces or dipoles F give (boxtable.h),
 
-       U += D F = A diag(l) A^T F,
+       U += D F = phi Q diag(l) Q^T psi^T F,
 
-   A the table's eigenvectors at the markers. D is steady in every flow. Over a period the near field's C is of nearest
-   images only and fades where D takes over (BoxPartImage). A rank has the rows of A of its own markers; a product sums
-   one amplitude an eigenvalue over all ranks.
+   phi and psi the values of the table's functions at the markers for velocities and for sources. A product sums sources
+   into the functions, goes through the eigenvectors once, and takes velocities out of the functions. D is steady in
+   every flow. Over a period the near field's C is of nearest images only and fades where D takes over (BoxPartImage).
+   A rank has the values of its own markers; a product sums the amplitudes over all ranks.
 
    Create, Place wherever the markers have been placed, then Apply or Add. */
 #pragma once
@@ -18,19 +19,19 @@ struct _p_BoxPart {
   BoxLattice lattice;
   Markers markers;      /* borrowed */
   BoxAxis axis[2];      /* the directions of the box, for BoxImage */
-  PetscBool ramp;       /* unsteady flow: D fades next to walls */
+  PetscBool ramp;       /* unsteady flow: D of forces fades next to walls */
   BoxTable table[2];    /* table of all the box, and of its middle half; each is made when it is first needed */
-  const BoxTable *at;   /* the table that A is of */
-  PetscReal *A;         /* [2n][rank] of the own markers, D = A diag(l) A^T */
-  PetscReal *X;         /* [2n] places of the own markers for which A is */
+  const BoxTable *at;   /* the table in use, of which the rest is */
+  PetscInt width;       /* functions of y, filled up with zeros to whole vectors */
+  PetscReal *value;     /* [n][functions of x + width] of the own markers */
+  PetscReal *function;  /* [components][functions of x][width] work */
   PetscReal *amplitude; /* [rank] work */
-  PetscInt room;        /* eigenvalues for which A and amplitude have room */
   PetscLogEvent make;
 };
 
-/* BoxPartCreate - for markers on the grid that `spec` makes, which is borrowed as the lattice's tables of forces are. A
-   lattice that is whole makes it the smooth part W_H of the coarser grid, less the exact images in walls. Collective.
- */
+/* BoxPartCreate - for markers on the grid that `spec` makes, which is borrowed as the lattice's tables of forces or
+   dipoles are. A lattice that is whole makes it the smooth part W_H of the coarser grid, less the exact images in
+   walls. Collective. */
 PETSC_EXTERN PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice,
                                           BoxPart *box);
 
@@ -44,7 +45,8 @@ static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {
   return BoxImage(box->axis, d);
 }
 
-/* BoxPartApply - U += alpha D F, own parts F[2n] and U[2n] of marker vectors, F as NearFieldApply's. Collective. */
+/* BoxPartApply - U += alpha D F, own parts of a marker vector U[2n] and of forces F[2n], as NearFieldApply's, or
+   tensors F[DIPOLE_COUNT n]. Collective. */
 PETSC_EXTERN PetscErrorCode BoxPartApply(BoxPart box, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
 
 /* BoxPartAdd - out += scale D, from forces on the markers in columns to the own ones in rows, out[2 n of columns][2 n

@@ -30,7 +30,7 @@ void BoxBlockSum(const BoxBlock *q, int first, int components, const PetscReal w
 }
 
 void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal part, int first, int count, PetscReal rows[]) {
-  PetscReal vx[BOX_FUNCTIONS], vy[BOX_FUNCTIONS], weight[BOX_BLOCK_FUNCTIONS];
+  PetscReal vx[BOX_PLACES], vy[BOX_PLACES], weight[BOX_BLOCK_FUNCTIONS];
   (void)PetscArrayzero(rows, count * t->rank);
   if (part == 0) return;
   BoxTableFunctions(t, 0, X[0], vx);

@@ -11,11 +11,6 @@
 #define FEW_CELLS 24   /* cells of the shorter side below which the ratio is 3 */
 #define SMALLEST 5e-4  /* part of the largest eigenvalue below which eigenvalues are dropped */
 
-/* Parts of a source: two of a force, three of a dipole. */
-static inline PetscInt BoxParts(const BoxTable *t) {
-  return t->components == 2 ? 2 : 3;
-}
-
 /* The coarser grid, its cells square: the run's own or, where that has more than COARSE_CELLS across, the fewest from
    there up to MOST_CELLS that fit the box, or else fit it best: within a half of 1/COARSE_CELLS, which D is smooth
    enough for. */
@@ -66,7 +61,7 @@ void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values
                   s = PetscSinReal(angle);
   PetscReal cosine = 1, sine = 0;
   values[0] = 1;
-  for (PetscInt m = 1; m <= a->modes; m++) { /* by addition of angles: rounding grows with m only */
+  for (PetscInt m = 1; 2 * m < t->functions[dir]; m++) { /* by addition of angles: rounding grows with m only */
     const PetscReal before = cosine;
     cosine = c * before - s * sine;
     sine = s * before + c * sine;
@@ -181,13 +176,13 @@ static void AddCouple(const BoxTable *t, int ci, int cj, Couple x, Couple y, Pet
 /* The blocks' parts of D between functions, from W between places; symmetric, of dipoles with its transpose beside it.
  */
 static PetscErrorCode BoxTableTransform(const BoxTable *t, const PetscReal W[]) {
-  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs, parts = BoxParts(t);
+  const PetscInt nx = t->axis[0].pairs, ny = t->axis[1].pairs;
   PetscReal *line;
   Couplings c[2];
   PetscFunctionBeginUser;
   for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], &c[dir]));
   PetscCall(PetscMalloc1(ny, &line));
-  for (int b = 0; b < 2 * parts; b++)
+  for (int b = 0; b < 2 * t->parts; b++)
     for (PetscInt p = 0; p < c[0].count; p++) {
       PetscCall(PetscArrayzero(line, ny));
       for (PetscInt k = p * c[0].terms; k < (p + 1) * c[0].terms; k++) {
@@ -197,8 +192,7 @@ static PetscErrorCode BoxTableTransform(const BoxTable *t, const PetscReal W[]) 
       for (PetscInt q = 0; q < c[1].count; q++) {
         PetscReal sum = 0;
         for (PetscInt k = q * c[1].terms; k < (q + 1) * c[1].terms; k++) sum += c[1].weight[k] * line[c[1].pair[k]];
-        AddCouple(t, b / (int)parts, (parts == 2 ? 0 : 2) + b % (int)parts, c[0].couple[p], c[1].couple[q],
-                  parts == 2 ? sum : 2 * sum);
+        AddCouple(t, b / t->parts, t->source + b % t->parts, c[0].couple[p], c[1].couple[q], t->source ? 2 * sum : sum);
       }
     }
   for (int dir = 0; dir < 2; dir++) PetscCall(PetscFree3(c[dir].couple, c[dir].pair, c[dir].weight));
@@ -209,22 +203,21 @@ static PetscErrorCode BoxTableTransform(const BoxTable *t, const PetscReal W[]) 
 /* Whether an eigenvalue is kept. With dipoles they come in pairs of either sign, whose vectors differ in the sign of
    the tensors' part: the positive one, doubled, is the pair in what tensors do to velocities. */
 static PetscBool IsKept(const BoxTable *t, PetscReal l, PetscReal least) {
-  return (BoxParts(t) == 2 ? PetscAbsReal(l) : l) > least ? PETSC_TRUE : PETSC_FALSE;
+  return (t->source ? l : PetscAbsReal(l)) > least ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Keep the block's eigenvectors (columns of Q) whose eigenvalues l are larger than `least`. */
-static PetscErrorCode KeepLargest(const BoxTable *t, BoxBlock *q, const PetscReal l[], PetscReal least,
-                                  PetscReal kept[], PetscInt *rank) {
+static PetscErrorCode KeepLargest(BoxTable *t, BoxBlock *q, const PetscReal l[], PetscReal least) {
   const PetscInt size = t->components * q->n[0] * q->n[1];
   PetscReal *all = q->Q;
   PetscFunctionBeginUser;
-  q->start = *rank;
+  q->start = t->rank;
   q->modes = 0;
   for (PetscInt k = 0; k < size; k++) q->modes += IsKept(t, l[k], least);
   PetscCall(PetscMalloc1(size * q->modes, &q->Q));
   for (PetscInt k = 0, m = 0; k < size; k++) {
     if (!IsKept(t, l[k], least)) continue;
-    kept[(*rank)++] = (BoxParts(t) == 2 ? 1 : 2) * l[k];
+    t->l[t->rank++] = (t->source ? 2 : 1) * l[k];
     for (PetscInt i = 0; i < size; i++) q->Q[i * q->modes + m] = all[k * size + i];
     m++;
   }
@@ -250,11 +243,17 @@ static PetscErrorCode BoxTableDecompose(MPI_Comm comm, BoxTable *t) {
     at += size;
   }
   for (PetscInt k = 0; k < count; k++) most = PetscMax(most, PetscAbsReal(l[k]));
-  t->rank = at = 0;
-  for (PetscInt b = 0; b < t->blocks; b++) {
-    BoxBlock *q = &t->block[b];
-    PetscCall(KeepLargest(t, q, l + at, SMALLEST * most, t->l, &t->rank));
-    at += t->components * q->n[0] * q->n[1];
+  const PetscInt blocks = t->blocks;
+  t->rank = t->blocks = t->functions[0] = t->functions[1] = at = 0;
+  for (PetscInt b = 0; b < blocks; b++) {
+    BoxBlock q = t->block[b];
+    const PetscInt size = t->components * q.n[0] * q.n[1];
+    PetscCall(KeepLargest(t, &q, l + at, SMALLEST * most));
+    at += size;
+    if (!q.modes) continue;
+    t->block[t->blocks++] = q;
+    for (int c = 0; c < t->components; c++)
+      for (int d = 0; d < 2; d++) t->functions[d] = PetscMax(t->functions[d], q.first[c][d] + q.n[d]);
   }
   PetscCall(PetscFree(l));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -283,13 +282,15 @@ static PetscErrorCode BoxTablePair(const FluidSpec *run, const char kernel[], co
 
 PetscErrorCode BoxTableCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice, PetscBool middle,
                               BoxTable *t) {
-  const PetscBool dipoles = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
-  PetscInt cells[2], size = dipoles ? 6 : 4;
+  PetscInt cells[2], size;
   PetscReal *W, height = spec->box[3] - spec->box[2];
   FluidSpec pair = *spec;
   BoxAxis axis[2];
   PetscFunctionBeginUser;
-  t->components = dipoles ? BOX_COMPONENTS : 2;
+  t->parts = lattice->dipole ? DIPOLE_COUNT : 2;
+  t->source = lattice->dipole ? 2 : 0;
+  t->components = t->source + t->parts;
+  size = 2 * t->parts;
   CoarseCells(spec, cells);
   t->H = (spec->box[1] - spec->box[0]) / cells[0];
   if (cells[0] * spec->cells[1] != cells[1] * spec->cells[0]) pair.box[3] = pair.box[2] + cells[1] * t->H;

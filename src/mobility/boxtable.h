@@ -3,14 +3,13 @@
 
        D = (h/H)^2 4/3 (W_{H/2} - W_H) = phi Q diag(l) Q^T phi^T,
 
-   phi the values of interpolating functions at a marker, Q and l eigenvectors and eigenvalues. Of the double layer's
-   dipoles D from the tensors to the velocities stands beside its transpose in a symmetric matrix. Ranks share the
-   solves (boxgrid.h), then all have the table. */
+   phi the values of interpolating functions at a marker, Q and l eigenvectors and eigenvalues. Sources are forces or
+   tensors of dipoles. Of tensors D from them to the velocities stands beside its transpose in a symmetric matrix. Ranks
+   share the solves (boxgrid.h), then all have the table. */
 #pragma once
 #include "mobility/boxgrid.h"
 
-#define BOX_FUNCTIONS BOX_PLACES /* more than the functions of a direction */
-#define BOX_BLOCK_FUNCTIONS 64   /* at most, of a component in a block: 8 x 8 between four walls */
+#define BOX_BLOCK_FUNCTIONS 64 /* at most, of a component in a block: 8 x 8 between four walls */
 
 /* Functions of x and y that D couples with one another only, and what is kept of its eigenvectors in them. */
 #define BOX_COMPONENTS 5 /* u, v, and of dipoles xx, yy, xy */
@@ -22,10 +21,12 @@ typedef struct {
 } BoxBlock;
 
 typedef struct {
-  int components;        /* 2, or BOX_COMPONENTS with dipoles */
+  int parts;             /* of a source: 2 of a force, DIPOLE_COUNT of a tensor */
+  int source;            /* component of its first part: 0 of a force, as that of a velocity; 2 of a tensor */
+  int components;        /* source + parts */
   BoxAxis axis[2];       /* places in x and y: Chebyshev's between walls, equal offsets over a period */
-  PetscInt functions[2]; /* in x and y: Lagrange's polynomials, or 1, cos, sin, .. over the period */
-  PetscInt blocks;
+  PetscInt functions[2]; /* in x and y, up to the last in a block: Lagrange's polynomials, or 1, cos, sin, .. */
+  PetscInt blocks;       /* those of which something is kept */
   BoxBlock *block;
   PetscInt rank; /* eigenvalues kept */
   PetscReal *l;  /* [rank] velocity per force */

@@ -36,7 +36,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
   PetscCall(DoubleImageDestroy(&s->image));
-  PetscCall(DoubleBoxDestroy(&s->box));
+  PetscCall(BoxPartDestroy(&s->box));
   PetscCall(PetscFree(s->block));
   PetscCall(PetscFree(s->value));
   PetscCall(PetscFree(*layer));
@@ -46,7 +46,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
 PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
   const BoxLattice lattice = {.unit = s->near->set.unit, .dipole = s->lattice, .half = s->near->half};
   PetscFunctionBeginUser;
-  PetscCall(DoubleBoxCreate(spec, s->near->set.markers, &lattice, &s->box));
+  PetscCall(BoxPartCreate(spec, s->near->set.markers, &lattice, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,7 +150,7 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
   PetscCall(PlaceNormals(s));
-  if (s->box) PetscCall(DoubleBoxPlace(s->box));
+  if (s->box) PetscCall(BoxPartPlace(s->box));
   PetscCall(PlaceDipoles(s));
   if (s->image) DoubleImagePlace(s->image, s->dipole);
   PetscCall(FindBlocks(s));
@@ -212,7 +212,7 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScala
     PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
                            s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
   }
-  if (s->box) PetscCall(DoubleBoxApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
+  if (s->box) PetscCall(BoxPartApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
   PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,7 +12,7 @@
    Create, perhaps AddBoxPart, Place where the near field has been placed, Set the jump, then Apply, Spread, Rows. */
 #pragma once
 #include "layers/doubleblock.h"
-#include "mobility/doublebox.h"
+#include "mobility/boxpart.h"
 #include "mobility/nearfield.h"
 #include "markers/dipolerows.h"
 
@@ -35,7 +35,7 @@ struct _p_DoubleLayer {
   PetscScalar *jump;  /* [2M] work: J of all markers, less its flux, */
   PetscScalar *plain; /* [2M] J, */
   PetscReal *tensor;  /* [DIPOLE_COUNT M] and the dipoles of the former */
-  DoubleBox box;      /* NULL without box part */
+  BoxPart box;        /* NULL without box part */
   PetscLogEvent place, apply;
 };
 

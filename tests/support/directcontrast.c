@@ -95,7 +95,7 @@ PetscErrorCode DirectAddContrast(Direct *d) {
   if (s->box) PetscCall(PetscCalloc1(rows * tensors, &D));
   for (PetscInt j = 0; j < tensors && D; j++) {
     unit[j] = 1;
-    PetscCall(DoubleBoxApply(s->box, -1, unit, D + j * rows));
+    PetscCall(BoxPartApply(s->box, -1, unit, D + j * rows));
     unit[j] = 0;
   }
   PetscCall(PetscFree(unit));

@@ -19,7 +19,7 @@ RANKS = {
     "test_direct": (1,),
 }
 #: Facts of those that state fewer than 20.
-FEW = {"test_doublebox": 3, "test_near_cells": 14, "test_nearfar": 11, "test_nearfield": 17}
+FEW = {"test_near_cells": 14, "test_nearfar": 11, "test_nearfield": 17}
 
 
 @pytest.mark.parametrize("name,ranks", [(name, ranks) for name in NAMES for ranks in RANKS.get(name, (1, 3))])

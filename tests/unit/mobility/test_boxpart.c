@@ -1,5 +1,6 @@
 /* The box part D of the near field: symmetric, of second order in h, free of a net flux through a membrane; with it the
-   markers' velocity on a coarse grid is that on a finer one. */
+   markers' velocity on a coarse grid is that on a finer one. A product of it and of the double layer's is that of the
+   table's vectors. */
 #include "facts.h"
 #include "scheme/scheme.h"
 
@@ -206,8 +207,56 @@ static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
   "-domain_box 0,5,0,5 -fluid_inertia none -vesicle_semi_axes 1.6,1 -vesicle_center 2.6,1.08 -vesicle_markers 45 "     \
   "-vesicle_allow_close_markers true "
 #define UNLIKE "-domain_box 0,5,0,5.079365079365079 "
+#define SEAM                                                                                                           \
+  "-domain_box 0,8,0,8 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_center 7.7654321,4.3 "                  \
+  "-vesicle_markers 35 -vesicle_allow_close_markers true "
 #define CHANNEL "-domain_bc_x periodic "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
+
+/* Largest D F - SUM phi Q diag(l) Q^T psi^T F of sources all unlike, D F by BoxPartApply, over the largest. */
+static PetscErrorCode ApplyOffBy(BoxPart box, PetscReal *off) {
+  const Layout l = box->markers->layout;
+  const BoxTable *t = box->at;
+  const PetscReal *X = box->markers->X;
+  PetscReal *F, *U, *a, *b, *sum, found[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc5(t->parts * l->M, &F, 2 * l->n, &U, 2 * t->rank, &a, t->parts * t->rank, &b, t->rank, &sum));
+  for (PetscInt j = 0; j < t->parts * l->M; j++) F[j] = PetscSinReal(1 + j * j);
+  PetscCall(BoxPartApply(box, 1, F + t->parts * l->first, U));
+  for (PetscInt j = 0; j < l->M; j++) {
+    BoxTableRows(t, X + 2 * j, 1, t->source, t->parts, b);
+    for (PetscInt m = 0; m < t->parts * t->rank; m++) sum[m % t->rank] += F[t->parts * j + m / t->rank] * b[m];
+  }
+  for (PetscInt k = 0; k < 2 * l->n; k++) {
+    BoxTableRows(t, X + 2 * (l->first + k / 2), 1, 0, 2, a);
+    const PetscReal answer = BoxProduct(t->rank, t->l, a + k % 2 * t->rank, sum);
+    found[0] = PetscMax(found[0], PetscAbsReal(answer - U[k]));
+    found[1] = PetscMax(found[1], PetscAbsReal(answer));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, l->comm));
+  PetscCall(PetscFree5(F, U, a, b, sum));
+  *off = found[0] / found[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Products of forces and of dipoles. */
+static PetscErrorCode CheckApply(const char name[], const char options[]) {
+  PetscReal off[2], ratio = 10;
+  World w;
+  PetscFunctionBeginUser;
+  PetscCall(WorldCreate(options, 32, PETSC_TRUE, &w));
+  const Mobility m = w.world.coupling->mobility;
+  PetscCall(DoubleLayerCreate(m->near, &ratio, &m->contrast));
+  PetscCall(DoubleLayerAddBoxPart(m->contrast, &w.world.scene->fluid));
+  PetscCall(DoubleLayerPlace(m->contrast));
+  PetscCall(ApplyOffBy(m->near->box, &off[0]));
+  PetscCall(ApplyOffBy(m->contrast->box, &off[1]));
+  for (int k = 0; k < 2; k++)
+    CHECK(off[k] < 1e-12, "%s: a product of %s is that of the table's vectors but for %.1e", name,
+          k ? "dipoles" : "forces", off[k]);
+  PetscCall(WorldDestroy(&w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* In a box of 256 cells across or more there is a box part only when it is asked for. */
 static PetscErrorCode CheckDefault(void) {
@@ -265,6 +314,9 @@ PetscErrorCode Facts(void) {
   PetscCall(CheckTable("walls", ONE, PETSC_TRUE));
   PetscCall(CheckTable("channel", ONE CHANNEL, PETSC_FALSE));
   PetscCall(CheckTable("periodic", ONE PERIODIC, PETSC_FALSE));
+  PetscCall(CheckApply("walls", ONE));
+  PetscCall(CheckApply("channel, on the seam", SEAM CHANNEL));
+  PetscCall(CheckApply("periodic", ONE PERIODIC));
   PetscCall(CheckUnlike(ONE UNLIKE "-domain_cells 63,64 ", ONE UNLIKE "-domain_cells 189,192 "));
   PetscCall(CheckVelocity("channel", ONE CHANNEL, 5e-5));
   PetscCall(CheckVelocity("half a cell from a wall", WALL CHANNEL, 4e-4));
