@@ -1,9 +1,9 @@
 /* Block Jacobi part of the coupled preconditioner: the dense problem (denseblock.h) of the membranes, one block for all
    vesicles whose markers are few, else one a vesicle (docs/solver.md, Preconditioner).
 
-   The mobility of a block is M = Mob + h^2 C, Mob the grid's (mobility.h) and C the near field. A block of one vesicle
-   that knows no obstacles is used in the frame of the vesicle for which it was made, turned and with labels shifted
-   (rigidfit.h), so that it serves longer.
+   The mobility of a block is M = Mob + h^2 C, Mob the grid's (meanmobility.h) and C the near field. A block of one
+   vesicle that knows no obstacles is used in the frame of the vesicle for which it was made, turned and with labels
+   shifted (rigidfit.h), so that it serves longer.
 
    A block belongs to one rank, the owner of its first vesicle. All ranks make parts of Mob of a block for all. */
 #pragma once
