@@ -1,4 +1,5 @@
 #include "precondition/coarsecorrection.h"
+#include "base/lanes.h"
 #include "layers/nearblock.h"
 
 #define CELLS 4  /* of the coarse grid: reach */
@@ -40,7 +41,7 @@ static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscR
 /* R by distance: the mean over directions, fading smoothly in the last quarter. */
 static void TabulateCorrection(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
   const LayerSetting cells = {.nu = 1, .unit = 1}; /* as the lattice's table */
-  const PetscReal nu = s->near->set.nu;
+  const PetscReal nu = s->mobility->fluid->nu;
   for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
     const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
                     x = 4 * PetscMax(0, r / CELLS - 0.75);
@@ -57,15 +58,16 @@ static void TabulateCorrection(CoarseCorrection s, const OffsetTable *lattice, c
   }
 }
 
-PetscErrorCode CoarseCorrectionCreate(NearField near, CoarseGrid coarse, CoarseCorrection *out) {
+PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *out) {
+  const PetscInt M = mobility->bodies->membrane->layout->M;
   CoarseCorrection s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
-  s->near = near;
+  s->mobility = mobility;
   s->reach = CELLS * coarse->fluid->grid->h;
-  TabulateCorrection(s, &near->lattice, coarse->markers->kernel);
-  PetscCall(PetscCalloc1(2 * near->set.bodies->membrane->layout->M, &s->force));
+  TabulateCorrection(s, &mobility->near->lattice, coarse->markers->kernel);
+  PetscCall(PetscCalloc2(2 * M, &s->force, 2 * M, &s->jump));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,7 +75,7 @@ PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
   PetscFunctionBeginUser;
   if (!*range) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree((*range)->pair));
-  PetscCall(PetscFree((*range)->force));
+  PetscCall(PetscFree2((*range)->force, (*range)->jump));
   PetscCall(PetscFree(*range));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -90,10 +92,9 @@ static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, c
 
 /* The pairs of marker i with those of the block's column. */
 static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
-  const NearField f = s->near;
-  const Layout l = s->near->set.bodies->membrane->layout;
-  const NearBounds *column = &f->pairs->bounds[b->column];
-  const PetscReal *X = s->near->set.markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
+  const Layout l = s->mobility->bodies->membrane->layout;
+  const NearBounds *column = &s->mobility->near->pairs->bounds[b->column];
+  const PetscReal *X = s->mobility->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
     if (x[d] < column->low[d] - s->reach || x[d] > column->high[d] + s->reach) PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,16 +106,19 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a block joins two vesicles. */
+static PetscBool JoinsVesicles(CoarseCorrection s, const NearBlock *b) {
+  return !NearBlockIsSelf(b) && PetscMax(b->row, b->column) < s->mobility->bodies->vesicles ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
-  const NearField f = s->near;
-  const Layout l = s->near->set.bodies->membrane->layout;
+  const NearList *list = &s->mobility->near->list;
+  const PetscInt *start = s->mobility->bodies->layout->start;
   PetscFunctionBeginUser;
   s->pairs = 0;
-  for (PetscInt b = 0; b < f->list.count.blocks; b++) {
-    const NearBlock *block = &f->list.block[b];
-    if (NearBlockIsSelf(block) || PetscMax(block->row, block->column) >= l->bodies) continue; /* vesicles' only */
-    for (PetscInt i = l->start[block->row]; i < l->start[block->row + 1]; i++) PetscCall(AddCorrectionRow(s, block, i));
-  }
+  for (const NearBlock *b = list->block; b < list->block + list->count.blocks; b++)
+    for (PetscInt i = start[b->row]; i < start[b->row + 1] && JoinsVesicles(s, b); i++)
+      PetscCall(AddCorrectionRow(s, b, i));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,8 +128,44 @@ static inline void TakeCorrection(const CorrectionPair *p, const PetscScalar f[2
   u[1] -= p->xy * f[0] + p->yy * f[1];
 }
 
-PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], PetscScalar U[]) {
-  const Layout l = s->near->set.bodies->membrane->layout;
+/* u += D J at x of the markers first .. end - 1, of which the last four overlap others. */
+static void AddJumpsAt(CoarseCorrection s, const PetscReal x[2], PetscInt first, PetscInt end, PetscScalar u[2]) {
+  const PetscReal *X = s->mobility->markers->X, *N = s->mobility->contrast->normal;
+  const Lanes order = {0, 1, 2, 3};
+  Lanes sum[2] = {{0}, {0}};
+  for (PetscInt k = first; k < end; k += LANES) {
+    const PetscInt at = PetscMin(k, end - LANES);
+    const LanesBits so = (LanesBits)(order >= (Lanes){0} + (PetscReal)(k - at));
+    Lanes rx, ry, nx, ny, jx, jy;
+    LanesPairs(X + 2 * at, &rx, &ry);
+    LanesPairs(N + 2 * at, &nx, &ny);
+    LanesPairs(s->jump + 2 * at, &jx, &jy);
+    rx -= x[0];
+    ry -= x[1];
+    const Lanes r2 = rx * rx + ry * ry, q = LanesWhere(so, (rx * nx + ry * ny) * (rx * jx + ry * jy) / (r2 * r2));
+    sum[0] += q * rx;
+    sum[1] += q * ry;
+  }
+  u[0] -= LanesSum(sum[0]) / PETSC_PI;
+  u[1] -= LanesSum(sum[1]) / PETSC_PI;
+}
+
+/* U += D J of the vesicle `column` at own markers of `row`; sign times shift moves the column. */
+static void AddJumps(CoarseCorrection s, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2],
+                     PetscScalar U[]) {
+  const Layout l = s->mobility->bodies->layout;
+  const PetscReal *X = s->mobility->markers->X;
+  if (s->mobility->contrast->ratio[column] == 1 || row < l->own || row >= l->end) return;
+  for (PetscInt i = l->start[row]; i < l->start[row + 1]; i++) {
+    const PetscReal x[2] = {X[2 * i] - sign * shift[0], X[2 * i + 1] - sign * shift[1]};
+    AddJumpsAt(s, x, l->start[column], l->start[column + 1], U + 2 * (i - l->first));
+  }
+}
+
+PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], const PetscScalar J[],
+                                     PetscScalar U[]) {
+  const NearList *list = &s->mobility->near->list;
+  const Layout l = s->mobility->bodies->membrane->layout;
   const PetscInt first = l->first, end = l->first + l->n;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, F, s->force));
@@ -133,6 +173,13 @@ PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], 
     const CorrectionPair *p = &s->pair[k];
     TakeCorrection(p, s->force + 2 * p->j, U + 2 * (p->i - first));
     if (p->j >= first && p->j < end) TakeCorrection(p, s->force + 2 * p->i, U + 2 * (p->j - first));
+  }
+  if (!J) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayoutGather(l, 2, J, s->jump));
+  for (const NearBlock *b = list->block; b < list->block + list->count.blocks; b++) {
+    if (!JoinsVesicles(s, b)) continue;
+    AddJumps(s, b->row, b->column, 1, b->shift, U);
+    AddJumps(s, b->column, b->row, -1, b->shift, U);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

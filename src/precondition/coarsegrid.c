@@ -51,8 +51,7 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   for (PetscInt v = 0; v < fine->bodies; v++) longest = PetscMax(longest, length[v]);
   PetscCall(MobilityTableCreate(&spec, c->markers->kernel, longest / 2, &c->table));
   PetscCall(MobilityTableSetUp(c->table, c->fluid->alpha));
-  PetscCall(LayoutCreateVec(points, 2, &c->X));
-  PetscCall(VecDuplicate(c->X, &c->F));
+  PetscCall(LayoutCreateVec(points, 2, &c->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,8 +59,7 @@ PetscErrorCode CoarseGridDestroy(CoarseGrid *coarse) {
   CoarseGrid c = *coarse;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDestroy(&c->X));
-  PetscCall(VecDestroy(&c->F));
+  PetscCall(VecDestroy(&c->work));
   PetscCall(MobilityTableDestroy(&c->table));
   PetscCall(MarkersDestroy(&c->markers));
   PetscCall(LayoutDestroy(&c->layout));
@@ -72,16 +70,16 @@ PetscErrorCode CoarseGridDestroy(CoarseGrid *coarse) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* to = the own parts from[2n] of all ranks, or this rank's where the grid is shared out. */
-static PetscErrorCode GatherPoints(CoarseGrid c, const PetscScalar from[], Vec to) {
+/* c->work = the own parts from[2n] of all ranks, or this rank's where the grid is shared out. */
+static PetscErrorCode GatherPoints(CoarseGrid c, const PetscScalar from[]) {
   PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayWrite(to, &a));
+  PetscCall(VecGetArrayWrite(c->work, &a));
   if (c->all)
     PetscCall(LayoutGather(c->layout, 2, from, a));
   else
     PetscCall(PetscArraycpy(a, from, 2 * c->layout->n));
-  PetscCall(VecRestoreArrayWrite(to, &a));
+  PetscCall(VecRestoreArrayWrite(c->work, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,8 +91,8 @@ PetscErrorCode CoarseGridPlace(CoarseGrid c, PetscScalar X[]) {
     const int d = (int)(k % 2);
     if (g->wall[d]) X[k] = PetscMax(g->lo[d] + least, PetscMin(g->hi[d] - least, X[k]));
   }
-  PetscCall(GatherPoints(c, X, c->X));
-  PetscCall(MarkersPlace(c->markers, c->X));
+  PetscCall(GatherPoints(c, X));
+  PetscCall(MarkersPlace(c->markers, c->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,10 +100,10 @@ PetscErrorCode CoarseGridApply(CoarseGrid c, PetscScalar F[]) {
   const PetscReal alpha = -1 / PetscSqr(c->fluid->grid->h);
   const PetscScalar *U;
   PetscFunctionBeginUser;
-  PetscCall(GatherPoints(c, F, c->F));
-  PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->F, c->F));
-  PetscCall(VecGetArrayRead(c->F, &U));
+  PetscCall(GatherPoints(c, F));
+  PetscCall(MarkersRespond(c->markers, StokesStream(c->stokes), NULL, alpha, c->work, c->work));
+  PetscCall(VecGetArrayRead(c->work, &U));
   PetscCall(PetscArraycpy(F, U + (c->all ? 2 * c->layout->first : 0), 2 * c->layout->n));
-  PetscCall(VecRestoreArrayRead(c->F, &U));
+  PetscCall(VecRestoreArrayRead(c->work, &U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

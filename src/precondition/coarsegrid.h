@@ -19,7 +19,7 @@ struct _p_CoarseGrid {
   Stokes stokes;
   Markers markers;     /* the points, between cells */
   MobilityTable table; /* mean mobility of two points: what the grid does to a vesicle itself */
-  Vec X, F;            /* marker vectors, of `all` if there is one */
+  Vec work;            /* marker vector, of `all` if there is one */
 };
 
 /* CoarseGridCreate - for the quasi-steady fluid that spec makes and vesicles with these initial lengths, whose layout
@@ -33,6 +33,5 @@ PETSC_EXTERN PetscErrorCode CoarseGridDestroy(CoarseGrid *coarse);
    markers may be are moved off it. Collective. */
 PETSC_EXTERN PetscErrorCode CoarseGridPlace(CoarseGrid coarse, PetscScalar X[]);
 
-/* CoarseGridApply - F := E A^-1 (-E^T F/h^2) of the coarse grid, h its cells, own parts of marker vectors. Collective.
- */
+/* CoarseGridApply - F := -E A^-1 E^T F/h^2 of the coarse grid, h its cells, own parts of marker vectors. Collective. */
 PETSC_EXTERN PetscErrorCode CoarseGridApply(CoarseGrid coarse, PetscScalar F[]);

@@ -1,75 +1,38 @@
 #include "precondition/interactions.h"
-#include "base/lanes.h"
+#include "numerics/blas.h"
 
 #define ITERATIONS 2 /* of GMRES */
 
-/* P^T F: a vesicle's forces, its labels those of the shape, to the coarse points. work[2n]. */
-static void RestrictForces(const CurvePoints *q, PetscInt shift, const PetscScalar F[], PetscReal work[],
-                           PetscScalar to[]) {
-  const PetscInt n = q->n;
-  PetscReal *x = work, *y = work + n;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt at = k + shift < n ? k + shift : k + shift - n;
-    x[k] = F[2 * at];
-    y[k] = F[2 * at + 1];
-  }
-  for (PetscInt i = 0; i < q->points; i++) {
-    to[2 * i] = LanesDot(n, q->to_markers + i * n, x);
-    to[2 * i + 1] = LanesDot(n, q->to_markers + i * n, y);
-  }
-}
-
-/* P W: velocities at the coarse points to the markers. work[2n]. */
-static void ProlongVelocity(const CurvePoints *q, PetscInt shift, const PetscReal W[], PetscReal work[],
-                            PetscScalar to[]) {
-  const PetscInt n = q->n;
-  PetscReal *x = work, *y = work + n;
-  (void)PetscArrayzero(work, 2 * n);
-  for (PetscInt i = 0; i < q->points; i++)
-    for (PetscInt k = 0; k < n; k++) {
-      x[k] += q->to_markers[i * n + k] * W[2 * i];
-      y[k] += q->to_markers[i * n + k] * W[2 * i + 1];
-    }
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt at = k + shift < n ? k + shift : k + shift - n;
-    to[2 * at] = x[k];
-    to[2 * at + 1] = y[k];
-  }
-}
-
-/* W += what a vesicle's forces F do to itself on the coarse grid, taken off. work[4 points]. */
-static void AddSelfVelocity(const SharedShape *q, const RigidFit *fit, PetscInt points, const PetscReal F[],
-                            PetscReal work[], PetscReal W[]) {
-  PetscReal *f = work, *w = work + 2 * points;
-  RigidFitTurn(fit, PETSC_TRUE, points, F, f);
-  (void)PetscArrayzero(w, 2 * points);
-  for (PetscInt j = 0; j < 2 * points; j++)
-    for (PetscInt i = 0; i < 2 * points; i++) w[i] += q->self[j * 2 * points + i] * f[j];
-  RigidFitTurn(fit, PETSC_FALSE, points, w, f);
-  for (PetscInt i = 0; i < 2 * points; i++) W[i] += f[i];
-}
-
-/* W = -K F + D J: what forces F and jumps J of the own vesicles, and the walls, do to the others; own parts of marker
-   vectors. */
-static PetscErrorCode OthersVelocity(Interactions c, const ShapeSources *sources, PetscScalar W[]) {
-  const PetscScalar *F = sources->force;
+/* W = -K F + D J, the sources of the answers B^-1 (U, sigma): what the own vesicles and the walls do to the others; own
+   parts of marker vectors, sigma NULL: 0. */
+static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], const PetscScalar sigma[],
+                                     PetscScalar W[]) {
   const SharedShapes s = c->shapes;
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  PetscReal *marker = c->work;
   PetscFunctionBeginUser;
-  for (PetscInt v = l->own; v < l->end; v++)
-    RestrictForces(&s->weights[s->shape[s->of[v]].weights], s->fit[v - l->own].shift, F + 2 * LayoutOffset(l, v),
-                   c->work, c->F + 2 * LayoutOffset(coarse, v));
-  PetscCall(PetscArraycpy(c->W, c->F, 2 * coarse->n));
-  PetscCall(CoarseGridApply(s->coarse, c->W));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const SharedShape *q = &s->shape[s->of[v]];
-    const RigidFit *fit = &s->fit[v - l->own];
-    const PetscInt points = LayoutCount(coarse, v), at = 2 * LayoutOffset(coarse, v);
-    AddSelfVelocity(q, fit, points, c->F + at, c->work, c->W + at);
-    ProlongVelocity(&s->weights[q->weights], fit->shift, c->W + at, c->work, W + 2 * LayoutOffset(l, v));
+  for (PetscInt k = 0; k < s->count; k++) SharedShapeSources(s, &s->shape[k], U, sigma, &c->answer);
+  for (PetscInt v = l->own; v < l->end; v++) { /* forces to the coarse points, P^T F, in the frame of the shape */
+    const CurvePoints *p = &s->weights[s->shape[s->of[v]].weights];
+    const PetscInt at = 2 * LayoutOffset(coarse, v);
+    RigidFitInto(&s->fit[v - l->own], 2, p->n, c->answer.force + 2 * LayoutOffset(l, v), marker);
+    PetscCall(DenseProduct(PETSC_FALSE, 2, p->points, p->n, marker, p->to_markers, c->F + at));
+    RigidFitTurn(&s->fit[v - l->own], PETSC_FALSE, p->points, c->F + at, c->W + at);
   }
-  PetscCall(CoarseCorrectionApply(c->near, F, W));
-  if (c->dipoles) PetscCall(DoubleCrossApply(c->dipoles, sources->jump, W));
+  PetscCall(CoarseGridApply(s->coarse, c->W));
+  for (PetscInt v = l->own; v < l->end; v++) { /* less what a vesicle does to itself, to the markers */
+    const SharedShape *q = &s->shape[s->of[v]];
+    const CurvePoints *p = &s->weights[q->weights];
+    const PetscInt points = 2 * p->points, at = 2 * LayoutOffset(coarse, v);
+    PetscReal *w = c->work + 2 * p->n;
+    RigidFitTurn(&s->fit[v - l->own], PETSC_TRUE, p->points, c->W + at, w);
+    PetscCall(DenseMultAdd(PETSC_FALSE, points, points, 1, q->self, c->F + at, w));
+    PetscCall(PetscArrayzero(marker, 2 * p->n));
+    for (PetscInt i = 0; i < points; i++)
+      for (PetscInt k = 0; k < p->n; k++) marker[2 * k + i % 2] += p->to_markers[i / 2 * p->n + k] * w[i];
+    RigidFitBack(&s->fit[v - l->own], 2, p->n, marker, W + 2 * LayoutOffset(l, v));
+  }
+  PetscCall(CoarseCorrectionApply(c->near, c->answer.force, c->answer.jump, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,11 +43,9 @@ static PetscErrorCode InteractionsMult(Mat A, Vec W, Vec y) {
   PetscScalar *to;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &c));
-  const SharedShapes s = c->shapes;
   PetscCall(VecGetArrayRead(W, &from));
   PetscCall(VecGetArray(y, &to));
-  for (PetscInt k = 0; k < s->count; k++) SharedShapeSources(s, &s->shape[k], from, &c->answer);
-  PetscCall(OthersVelocity(c, &c->answer, to));
+  PetscCall(OthersVelocity(c, from, NULL, to));
   PetscCall(VecRestoreArray(y, &to));
   PetscCall(VecRestoreArrayRead(W, &from));
   PetscCall(VecAYPX(y, -1, W));
@@ -115,14 +76,10 @@ PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
   PetscCall(PetscNew(&c));
   *out = c;
   c->shapes = s;
-  for (PetscInt v = l->own; v < l->end; v++)
-    most = PetscMax(most, PetscMax(2 * LayoutCount(l, v), 4 * LayoutCount(coarse, v)));
+  for (PetscInt v = l->own; v < l->end; v++) most = PetscMax(most, 2 * LayoutCount(l, v) + 2 * LayoutCount(coarse, v));
   PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->answer.force, most, &c->work));
-  if (s->coupling->mobility->contrast) {
-    PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
-    PetscCall(DoubleCrossCreate(s->coupling->mobility->contrast, &c->dipoles));
-  }
-  PetscCall(CoarseCorrectionCreate(s->coupling->mobility->near, s->coarse, &c->near));
+  if (s->coupling->mobility->contrast) PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
+  PetscCall(CoarseCorrectionCreate(s->coupling->mobility, s->coarse, &c->near));
   PetscCall(CreateInteractionKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -138,7 +95,6 @@ PetscErrorCode InteractionsDestroy(Interactions *cross) {
   PetscCall(CoarseCorrectionDestroy(&c->near));
   PetscCall(PetscFree4(c->F, c->W, c->answer.force, c->work));
   PetscCall(PetscFree(c->answer.jump));
-  PetscCall(DoubleCrossDestroy(&c->dipoles));
   PetscCall(PetscFree(*cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,17 +114,19 @@ PetscErrorCode InteractionsPlace(Interactions c) {
   }
   PetscCall(CoarseGridPlace(s->coarse, c->W));
   PetscCall(CoarseCorrectionPlace(c->near));
-  if (c->dipoles) PetscCall(DoubleCrossPlace(c->dipoles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode InteractionsSolve(Interactions c, const ShapeSources *alone, Vec *W) {
-  PetscScalar *known;
+PetscErrorCode InteractionsAdd(Interactions c, const PetscScalar sigma[], PetscScalar U[]) {
+  const PetscInt n = 2 * c->shapes->coupling->membrane->layout->n;
+  PetscScalar *a;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArray(c->known, &known));
-  PetscCall(OthersVelocity(c, alone, known));
-  PetscCall(VecRestoreArray(c->known, &known));
+  PetscCall(VecGetArray(c->known, &a));
+  PetscCall(OthersVelocity(c, U, sigma, a));
+  PetscCall(VecRestoreArray(c->known, &a));
   PetscCall(KSPSolve(c->ksp, c->known, c->velocity));
-  *W = c->velocity;
+  PetscCall(VecGetArray(c->velocity, &a));
+  for (PetscInt k = 0; k < n; k++) U[k] += a[k];
+  PetscCall(VecRestoreArray(c->velocity, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

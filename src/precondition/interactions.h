@@ -4,9 +4,8 @@
    B^-1 is the inverse of each vesicle's own problem, by its shared shape; F(.) the forces of an answer; K the mobility
    of other vesicles and walls, by the coarse grid (coarsegrid.h) and its correction between near markers. The
    velocities W that the others make obey W + K F(B^-1 (W, 0)) = -K F(B^-1 r). A few iterations of GMRES find most of W.
-   With viscosity contrast -K F has the double layer of the jumps beside it (doublecross.h). */
+   With viscosity contrast the correction has the double layer of the jumps too. */
 #pragma once
-#include "precondition/doublecross.h"
 #include "precondition/shapeset.h"
 #include "precondition/coarsecorrection.h"
 #include <petscksp.h>
@@ -17,10 +16,9 @@ struct _p_Interactions {
   Mat A;
   KSP ksp;
   Vec known, velocity; /* marker vectors: right-hand side and W */
-  PetscScalar *F, *W;  /* [2 own coarse points] forces and velocities */
-  DoubleCross dipoles; /* NULL without viscosity contrast */
+  PetscScalar *F, *W;  /* [2 own coarse points] forces in the shapes' frames, velocities */
   ShapeSources answer; /* work */
-  PetscReal *work;     /* of one vesicle */
+  PetscReal *work;     /* [2 markers + 2 coarse points] of one vesicle */
 };
 
 /* InteractionsCreate - of shapes with a coarse grid. Collective. */
@@ -30,6 +28,5 @@ PETSC_EXTERN PetscErrorCode InteractionsDestroy(Interactions *cross);
 /* InteractionsPlace - where the coupling has been placed and its vesicles have chosen their shapes. Collective. */
 PETSC_EXTERN PetscErrorCode InteractionsPlace(Interactions cross);
 
-/* InteractionsSolve - from the own forces and jumps of B^-1 r: the marker vector W, which belongs to `cross`.
-   Collective. */
-PETSC_EXTERN PetscErrorCode InteractionsSolve(Interactions cross, const ShapeSources *alone, Vec *W);
+/* InteractionsAdd - U += W for the own U[2n] and sigma[n] of r. Collective. */
+PETSC_EXTERN PetscErrorCode InteractionsAdd(Interactions cross, const PetscScalar sigma[], PetscScalar U[]);

@@ -72,10 +72,8 @@ static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
   PetscFunctionBeginUser;
   PetscCall(FindShapeWeights(s, n, points, &q->weights));
   PetscCall(PetscCalloc1(4 * points * points, &q->self));
-  PetscCall(PetscCalloc1(2 * points, &q->points));
-  for (PetscInt i = 0; i < points; i++)
-    for (PetscInt k = 0; k < 2 * n; k++)
-      q->points[2 * i + k % 2] += s->weights[q->weights].to_points[i * n + k / 2] * q->X[k];
+  PetscCall(PetscMalloc1(2 * points, &q->points));
+  PetscCall(DenseProduct(PETSC_FALSE, 2, points, n, q->X, s->weights[q->weights].to_points, q->points));
   for (PetscInt j = 0; j < points; j++)
     for (PetscInt i = 0; i < points; i++) {
       const PetscReal d[2] = {q->points[2 * i] - q->points[2 * j], q->points[2 * i + 1] - q->points[2 * j + 1]};

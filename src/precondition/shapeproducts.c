@@ -1,33 +1,32 @@
 /* The preconditioner's part of the vesicles: shapes' matrices on the columns of all vesicles that take them. */
 #include "precondition/shapeset.h"
 
-/* (U, sigma) += y, back from the shape's frame. */
-static void AddFromShape(const RigidFit *p, PetscInt n, const PetscReal y[], PetscScalar U[], PetscScalar sigma[]) {
-  const PetscReal c = p->turn[0], s = p->turn[1];
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt at = k + p->shift < n ? k + p->shift : k + p->shift - n;
-    U[2 * at] += c * y[2 * k] - s * y[2 * k + 1];
-    U[2 * at + 1] += s * y[2 * k] + c * y[2 * k + 1];
-    sigma[at] += y[2 * n + k];
-  }
-}
-
-/* Columns W of the vesicles that take a shape, in its frame, to s->from, `each` numbers apart. */
-static void GatherShapeColumns(SharedShapes s, const SharedShape *q, PetscInt each, const PetscScalar W[]) {
+/* Columns of own vesicle v's numbers in the frame of its shape: U and, unless NULL, sigma behind it. Returns how many.
+ */
+static PetscInt IntoFrame(SharedShapes s, PetscInt v, const PetscScalar U[], const PetscScalar sigma[],
+                          PetscReal column[]) {
   const Layout l = s->coupling->membrane->layout;
-  PetscReal *x = s->from;
-  for (PetscInt k = q->begin; k < q->end; k++, x += each) {
-    const PetscInt v = s->order[k];
-    RigidFitInto(&s->fit[v - l->own], 2, LayoutCount(l, v), W + 2 * LayoutOffset(l, v), x);
-  }
+  const PetscInt n = LayoutCount(l, v), at = LayoutOffset(l, v);
+  RigidFitInto(&s->fit[v - l->own], 2, n, U + 2 * at, column);
+  if (sigma) RigidFitInto(&s->fit[v - l->own], 1, n, sigma + at, column + 2 * n);
+  return sigma ? 3 * n : 2 * n;
 }
 
-/* F and J of each vesicle, from the columns gathered. */
-static void FindSources(SharedShapes s, const SharedShape *q, PetscInt inner, const ShapeSources *sources) {
+/* A matrix of a shape times the columns of the vesicles that take it: s->to. */
+static void ShapeProduct(SharedShapes s, const SharedShape *q, const PackedMatrix *A, const PetscScalar U[],
+                         const PetscScalar sigma[]) {
+  PetscReal *x = s->from;
+  PetscInt inner = 0;
+  for (PetscInt k = q->begin; k < q->end; k++, x += inner) inner = IntoFrame(s, s->order[k], U, sigma, x);
+  PackedMatrixProduct(A, inner, q->end - q->begin, s->from, s->to);
+}
+
+void SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar U[], const PetscScalar sigma[],
+                        const ShapeSources *sources) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
   const PetscReal *y = s->to;
-  PackedMatrixProduct(&q->sources, inner, q->end - q->begin, s->from, s->to);
+  ShapeProduct(s, q, &q->sources, U, sigma);
   for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->sources)) {
     const PetscInt v = s->order[k], at = 2 * LayoutOffset(l, v);
     RigidFitBack(&s->fit[v - l->own], 2, n, y, sources->force + at);
@@ -38,42 +37,14 @@ static void FindSources(SharedShapes s, const SharedShape *q, PetscInt inner, co
   }
 }
 
-/* (V, sigma) of each vesicle, added. */
-static void AddAnswers(SharedShapes s, const SharedShape *q, PetscInt inner, PetscScalar U[], PetscScalar sigma[]) {
-  const Layout l = s->coupling->membrane->layout;
-  const PetscReal *y = s->to;
-  PackedMatrixProduct(&q->inverse, inner, q->end - q->begin, s->from, s->to);
-  for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->inverse)) {
-    const PetscInt v = s->order[k], at = LayoutOffset(l, v);
-    AddFromShape(&s->fit[v - l->own], LayoutCount(l, v), y, U + 2 * at, sigma + at);
-  }
-}
-
-void SharedShapeSolveAlone(SharedShapes s, const SharedShape *q, PetscScalar U[], PetscScalar sigma[],
-                           const ShapeSources *sources) {
+void SharedShapeSolve(SharedShapes s, const SharedShape *q, PetscScalar U[], PetscScalar sigma[]) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
-  PetscReal *x = s->from + 2 * n;
-  GatherShapeColumns(s, q, 3 * n, U);
-  for (PetscInt k = q->begin; k < q->end; k++, x += 3 * n) {
+  const PetscReal *y = s->to;
+  ShapeProduct(s, q, &q->inverse, U, sigma);
+  for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->inverse)) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v);
-    RigidFitInto(&s->fit[v - l->own], 1, n, sigma + at, x);
-    (void)PetscArrayzero(U + 2 * at, 2 * n);
-    (void)PetscArrayzero(sigma + at, n);
+    RigidFitBack(&s->fit[v - l->own], 2, n, y, U + 2 * at);
+    RigidFitBack(&s->fit[v - l->own], 1, n, y + 2 * n, sigma + at);
   }
-  AddAnswers(s, q, 3 * n, U, sigma);
-  if (sources) FindSources(s, q, 3 * n, sources);
-}
-
-void SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar W[], const ShapeSources *sources) {
-  const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
-  GatherShapeColumns(s, q, inner, W);
-  FindSources(s, q, inner, sources);
-}
-
-void SharedShapeAddAnswer(SharedShapes s, const SharedShape *q, const PetscScalar W[], PetscScalar U[],
-                          PetscScalar sigma[]) {
-  const PetscInt inner = 2 * LayoutCount(s->coupling->membrane->layout, q->like);
-  GatherShapeColumns(s, q, inner, W);
-  AddAnswers(s, q, inner, U, sigma);
 }

@@ -42,7 +42,6 @@ struct _p_SharedShapes {
   RigidFit *fit;        /* [own vesicles] in its shape's frame */
   PetscReal *X;         /* [2 most markers of a vesicle] work */
   PetscReal *from, *to; /* columns of own vesicles: work */
-  ShapeSources alone;   /* work */
   Interactions cross;   /* NULL without coarse grid */
 };
 
@@ -50,12 +49,9 @@ struct _p_SharedShapes {
    good is false when a matrix is singular. Not collective. */
 PETSC_EXTERN PetscErrorCode SharedShapeMake(SharedShapes shapes, SharedShape *shape, PetscBool *good);
 
-/* SharedShapeSolveAlone - from the own parts U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, and
-   their sources unless NULL. SharedShapeSources - the sources of the answers to (W, 0). SharedShapeAddAnswer - (U,
-   sigma) += these answers. Entries of vesicles of other shapes stay as they are. Not collective. */
-PETSC_EXTERN void SharedShapeSolveAlone(SharedShapes shapes, const SharedShape *shape, PetscScalar U[],
-                                        PetscScalar sigma[], const ShapeSources *sources);
-PETSC_EXTERN void SharedShapeSources(SharedShapes shapes, const SharedShape *shape, const PetscScalar W[],
-                                     const ShapeSources *sources);
-PETSC_EXTERN void SharedShapeAddAnswer(SharedShapes shapes, const SharedShape *shape, const PetscScalar W[],
-                                       PetscScalar U[], PetscScalar sigma[]);
+/* SharedShapeSources - the sources of the answers of each vesicle's dense problem to its own parts of U[2n] and
+   sigma[n] = r_s; sigma NULL: 0. SharedShapeSolve - U and sigma become these answers, V and sigma. Entries of vesicles
+   of other shapes stay as they are. Not collective. */
+PETSC_EXTERN void SharedShapeSources(SharedShapes shapes, const SharedShape *shape, const PetscScalar U[],
+                                     const PetscScalar sigma[], const ShapeSources *sources);
+PETSC_EXTERN void SharedShapeSolve(SharedShapes shapes, const SharedShape *shape, PetscScalar U[], PetscScalar sigma[]);

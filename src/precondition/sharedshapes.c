@@ -13,9 +13,7 @@ static PetscErrorCode CreateShapeWork(SharedShapes s) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
-  PetscCall(
-      PetscMalloc3(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to, 2 * l->n, &s->alone.force));
-  if (s->coupling->mobility->contrast) PetscCall(PetscMalloc1(2 * l->n, &s->alone.jump));
+  PetscCall(PetscMalloc2(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -60,8 +58,7 @@ PetscErrorCode SharedShapesDestroy(SharedShapes *shapes) {
   PetscCall(InteractionsDestroy(&s->cross));
   PetscCall(CoarseGridDestroy(&s->coarse));
   PetscCall(PetscFree4(s->of, s->order, s->fit, s->X));
-  PetscCall(PetscFree3(s->from, s->to, s->alone.force));
-  PetscCall(PetscFree(s->alone.jump));
+  PetscCall(PetscFree2(s->from, s->to));
   PetscCall(PetscFree(*shapes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -238,16 +235,11 @@ PetscErrorCode SharedShapesFollow(SharedShapes s, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* B^-1 (r + (W, 0)). */
 PetscErrorCode SharedShapesSolve(SharedShapes s, PetscScalar U[], PetscScalar sigma[]) {
-  const PetscScalar *a;
-  Vec W;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++) SharedShapeSolveAlone(s, &s->shape[k], U, sigma, s->cross ? &s->alone : NULL);
-  if (!s->cross) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(InteractionsSolve(s->cross, &s->alone, &W));
-  PetscCall(VecGetArrayRead(W, &a));
-  for (PetscInt k = 0; k < s->count; k++) SharedShapeAddAnswer(s, &s->shape[k], a, U, sigma);
-  PetscCall(VecRestoreArrayRead(W, &a));
+  if (s->cross) PetscCall(InteractionsAdd(s->cross, sigma, U));
+  for (PetscInt k = 0; k < s->count; k++) SharedShapeSolve(s, &s->shape[k], U, sigma);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
