@@ -24,12 +24,13 @@ static PetscErrorCode Normals(Obstacles o, PetscInt b, PetscReal *length) {
 /* One curve's middle and mean edge, and its motion. */
 static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt b) {
   const PetscInt first = o->layout->start[b], n = LayoutCount(o->layout, b);
-  ObstacleMotion *m = &o->motion[b];
+  BodyMotion *m = &o->motion[b];
   PetscReal length;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < 2 * n; k++) o->center[2 * b + k % 2] += o->rest[2 * first + k] / n;
+  for (PetscInt k = 0; k < 2 * n; k++) m->center[k % 2] += o->rest[2 * first + k] / n;
   PetscCall(Normals(o, b, &length));
   o->ds[b] = length / n;
+  m->frequency = own->frequency;
   for (int c = 0; c < 2; c++) m->velocity[c] = own->velocity[2 * b + c];
   m->rotation = own->turn[b];
   m->turned = own->moving && m->rotation != 0 && !own->circles ? PETSC_TRUE : PETSC_FALSE;
@@ -48,14 +49,13 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   PetscCall(PetscNew(&o));
   *out = o;
   o->all = all;
-  o->frequency = own->frequency;
   o->modes = own->modes;
   o->beta = 1 / (4 * scene->fluid.nu);
   PetscCall(LayoutCreatePart(all, all->bodies - curves, all->bodies, &o->layout));
   const PetscInt W = o->layout->M;
-  PetscCall(PetscCalloc7(2 * W, &o->rest, 2 * W, &o->X, 2 * W, &o->N, 2 * curves, &o->center, curves, &o->ds, curves,
+  PetscCall(PetscCalloc7(2 * W, &o->rest, 2 * W, &o->X, 2 * W, &o->N, curves, &o->motion, curves, &o->ds, curves,
                          &o->spectral, curves, &o->container));
-  PetscCall(PetscMalloc4(curves, &o->kind, curves, &o->motion, curves, &o->vesicle, curves, &o->ratio));
+  PetscCall(PetscMalloc3(curves, &o->kind, curves, &o->vesicle, curves, &o->ratio));
   PetscCall(PetscArraycpy(o->kind, own->outline.kind, curves));
   PetscCall(PetscArraycpy(o->rest, own->outline.X, 2 * W));
   PetscCall(PetscArraycpy(o->X, own->outline.X, 2 * W));
@@ -69,28 +69,10 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How long a body would have moved with its velocity of time 0 to be where it is. */
-static PetscReal Travelled(Obstacles o, PetscReal t) {
-  return o->frequency > 0 ? PetscSinReal(o->frequency * t) / o->frequency : t;
-}
-
-ObstaclePose ObstaclesPose(Obstacles o, PetscInt b, PetscReal t) {
-  const ObstacleMotion *m = &o->motion[b];
-  const PetscReal *c = o->center + 2 * b, s = Travelled(o, t);
-  if (!m->carried) return (ObstaclePose){{c[0], c[1]}, 0};
-  return (ObstaclePose){{c[0] + m->velocity[0] * s, c[1] + m->velocity[1] * s}, m->rotation * s};
-}
-
 /* The markers of one curve at time t, X[2W]. */
-static void Carry(Obstacles o, PetscInt b, PetscReal t, PetscReal X[]) {
-  const ObstaclePose p = ObstaclesPose(o, b, t);
-  const ObstacleMotion *m = &o->motion[b];
-  const PetscReal turn[2] = {m->turned ? PetscCosReal(p.angle) : 1, m->turned ? PetscSinReal(p.angle) : 0};
-  for (PetscInt k = o->layout->start[b]; k < o->layout->start[b + 1]; k++) {
-    const PetscReal x = o->rest[2 * k] - o->center[2 * b], y = o->rest[2 * k + 1] - o->center[2 * b + 1];
-    X[2 * k] = m->carried ? p.center[0] + turn[0] * x - turn[1] * y : o->rest[2 * k];
-    X[2 * k + 1] = m->carried ? p.center[1] + turn[1] * x + turn[0] * y : o->rest[2 * k + 1];
-  }
+static void ObstacleCarry(Obstacles o, PetscInt b, PetscReal t, PetscReal X[]) {
+  const PetscInt at = 2 * o->layout->start[b];
+  MotionCarry(&o->motion[b], t, LayoutCount(o->layout, b), o->rest + at, X + at);
 }
 
 PetscErrorCode ObstaclesPlace(Obstacles o, PetscReal t) {
@@ -98,7 +80,7 @@ PetscErrorCode ObstaclesPlace(Obstacles o, PetscReal t) {
   PetscFunctionBeginUser;
   o->t = t;
   for (PetscInt b = 0; b < o->layout->bodies; b++) {
-    if (o->motion[b].carried) Carry(o, b, t, o->X);
+    if (o->motion[b].carried) ObstacleCarry(o, b, t, o->X);
     if (o->motion[b].turned) PetscCall(Normals(o, b, &length));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -109,8 +91,8 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < o->layout->bodies; b++) PetscCall(SpectralDestroy(&o->spectral[b]));
-  PetscCall(PetscFree7(o->rest, o->X, o->N, o->center, o->ds, o->spectral, o->container));
-  PetscCall(PetscFree4(o->kind, o->motion, o->vesicle, o->ratio));
+  PetscCall(PetscFree7(o->rest, o->X, o->N, o->motion, o->ds, o->spectral, o->container));
+  PetscCall(PetscFree3(o->kind, o->vesicle, o->ratio));
   PetscCall(LayoutDestroy(&o->layout));
   PetscCall(PetscFree(*obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -128,7 +110,7 @@ void ObstaclesOrder(Obstacles o, const PetscReal own[], PetscReal seen[]) {
 }
 
 void ObstaclesCurves(Obstacles o, PetscReal t, PetscReal X[]) {
-  for (PetscInt b = 0; b < o->layout->bodies; b++) Carry(o, b, t, X);
+  for (PetscInt b = 0; b < o->layout->bodies; b++) ObstacleCarry(o, b, t, X);
   ObstaclesOrder(o, X, X);
 }
 
@@ -194,7 +176,39 @@ PetscErrorCode ObstaclesCheck(Obstacles o, Grid g, PetscReal t, char message[PET
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ObstaclesPressure(Obstacles o, const PetscScalar F[], PetscScalar y[]) {
+/* Half the width of a curve, area over half its length, and how far its markers are from its center. */
+static void ObstacleExtent(Obstacles o, PetscInt b, PetscReal *half, PetscReal *reach) {
+  const PetscInt n = LayoutCount(o->layout, b);
+  const PetscReal *X = o->rest + 2 * o->layout->start[b], *center = o->motion[b].center;
+  PetscReal area = 0, length = 0;
+  *reach = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal *A = X + 2 * k, *B = X + 2 * ((k + 1) % n);
+    area += 0.5 * (A[0] * B[1] - B[0] * A[1]);
+    length += PetscHypotReal(B[0] - A[0], B[1] - A[1]);
+    *reach = PetscMax(*reach, PetscHypotReal(A[0] - center[0], A[1] - center[1]));
+  }
+  *half = 2 * area / length;
+}
+
+PetscErrorCode ObstaclesCheckStride(Obstacles o, PetscReal t, PetscReal dt, char message[PETVES_MAX_MESSAGE]) {
+  PetscReal half, reach;
+  PetscFunctionBeginUser;
+  message[0] = 0;
+  if (o->all->bodies == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < o->layout->bodies && !*message; b++) {
+    if (!o->motion[b].carried) continue;
+    ObstacleExtent(o, b, &half, &reach);
+    const PetscReal stride = MotionStride(&o->motion[b], t - dt, t, reach);
+    if (stride > half)
+      PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
+                              "obstacle %" PetscInt_FMT " would go by %.3g in one step, more than half its width, %.3g",
+                              b + 1, (double)stride, (double)half));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ObstaclesRows(Obstacles o, const PetscScalar F[], PetscScalar y[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++) {
     const PetscInt at = 2 * LayoutOffset(l, b), n = 2 * LayoutCount(l, b);
@@ -203,6 +217,18 @@ void ObstaclesPressure(Obstacles o, const PetscScalar F[], PetscScalar y[]) {
     for (PetscInt k = 0; k < n; k++) sum += N[k] * F[at + k];
     for (PetscInt k = 0; k < n; k++) y[at + k] += o->beta * sum * N[k];
   }
+}
+
+void ObstaclesBlock(Obstacles o, PetscInt b, PetscReal alpha, PetscInt lda, PetscReal A[]) {
+  const PetscReal *N = o->N + 2 * o->layout->start[b];
+  for (PetscInt j = 0; j < 2 * LayoutCount(o->layout, b); j++)
+    for (PetscInt i = 0; i < 2 * LayoutCount(o->layout, b); i++) A[j * lda + i] += alpha * o->beta * N[i] * N[j];
+}
+
+void ObstaclesTurn(Obstacles o, PetscReal from, PetscReal to, PetscScalar F[]) {
+  const Layout l = o->layout;
+  for (PetscInt b = l->own; b < l->end; b++)
+    MotionTurn(&o->motion[b], from, to, LayoutCount(l, b), F + 2 * LayoutOffset(l, b));
 }
 
 void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScalar y[]) {
@@ -214,22 +240,17 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
   }
 }
 
-PetscErrorCode ObstaclesData(Obstacles o, const Flow *flow, PetscScalar y[], char message[PETVES_MAX_MESSAGE]) {
+PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, PetscScalar y[], char message[PETVES_MAX_MESSAGE]) {
   const Layout l = o->layout;
-  PetscReal *u;
+  PetscReal *u, U[2];
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * l->n, &u));
   PetscCall(FlowVelocities(flow, o->t, l->n, o->X + 2 * l->first, u, message));
-  for (PetscInt b = l->own; b < l->end; b++) {
-    const ObstacleMotion *m = &o->motion[b];
-    const ObstaclePose p = ObstaclesPose(o, b, o->t);
-    const PetscReal swing = o->ratio[b] * PetscCosReal(o->frequency * o->t);
+  for (PetscInt b = l->own; b < l->end; b++)
     for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
-      const PetscReal x = o->X[2 * k] - p.center[0], *X = o->X + 2 * k;
-      const PetscReal U[2] = {m->velocity[0] - m->rotation * (X[1] - p.center[1]), m->velocity[1] + m->rotation * x};
-      for (int c = 0; c < 2; c++) y[2 * (k - l->first) + c] += u[2 * (k - l->first) + c] - swing * U[c];
+      MotionVelocity(&o->motion[b], o->t, o->X + 2 * k, U);
+      for (PetscInt c = 0, at = 2 * (k - l->first); c < 2; c++) y[at + c] += u[at + c] - o->ratio[b] * U[c];
     }
-  }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -241,8 +262,8 @@ PetscErrorCode ObstaclesLoads(Obstacles o, PetscReal t, const PetscScalar F[], O
   PetscCall(PetscArrayzero(load, l->bodies));
   PetscCall(PetscMalloc1(2 * l->M, &at));
   for (PetscInt b = l->own; b < l->end; b++) {
-    const ObstaclePose p = ObstaclesPose(o, b, t);
-    Carry(o, b, t, at);
+    const BodyPose p = MotionPose(&o->motion[b], t);
+    ObstacleCarry(o, b, t, at);
     for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
       const PetscReal *f = F + 2 * (k - l->first), *X = at + 2 * k;
       load[b].force[0] += f[0];

@@ -155,7 +155,7 @@ static PetscErrorCode FramesSetWrapped(Frames *f, const Gathered *now, PetscInt 
   if (l->M) AppendedSet(&f->file, k++, f->wrapped);
   if (!s->scene->obstacles.moving) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < o->layout->bodies; v++) {
-    const ObstaclePose pose = ObstaclesPose(o, v, s->state.t);
+    const BodyPose pose = MotionPose(&o->motion[v], s->state.t);
     if (o->motion[v].carried)
       ShiftIntoBox(s->fluid->grid, 1, pose.center, LayoutCount(o->layout, v), f->solid + 2 * o->layout->start[v]);
   }

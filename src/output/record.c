@@ -39,7 +39,7 @@ static void ObstacleRowName(const SceneObstacles *o, PetscInt k, char name[RECOR
 
 /* The columns of one obstacle. */
 static void ObstacleTake(Scheme s, PetscInt b, const ObstacleLoad *load, PetscReal values[]) {
-  const ObstaclePose pose = ObstaclesPose(s->coupling->bodies->obstacles, b, s->state.t);
+  const BodyPose pose = MotionPose(&s->coupling->bodies->obstacles->motion[b], s->state.t);
   values[2] = load->torque;
   for (int c = 0; c < 2; c++) values[c] = load->force[c];
   if (!s->scene->obstacles.moving) return;
@@ -101,12 +101,12 @@ static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
   PetscCall(PetscCalloc2(vesicles + curves, &inner, 2 * (vesicles + curves), &place));
   PetscCall(VesicleLoads(s, inner, place));
   for (PetscInt b = 0; b < curves; b++) {
-    const ObstaclePose pose = ObstaclesPose(o, b, s->state.t);
+    const BodyPose pose = MotionPose(&o->motion[b], s->state.t);
     for (int c = 0; c < 2; c++) place[2 * (vesicles + b) + c] = pose.center[c];
     inner[vesicles + b] = load[b];
   }
   for (PetscInt b = 0; b < curves; b++) {
-    const ObstacleMotion *m = &o->motion[b];
+    const BodyMotion *m = &o->motion[b];
     const PetscBool moves = m->velocity[0] != 0 || m->velocity[1] != 0 || m->rotation != 0 ? PETSC_TRUE : PETSC_FALSE;
     if (!o->container[b] || (!s->fluid->steady && !moves)) continue;
     load[b] = s->fluid->steady ? (ObstacleLoad){{0, 0}, 0} : (ObstacleLoad){{NAN, NAN}, NAN};

@@ -104,7 +104,7 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
   const Layout l = o->layout;
   const PetscInt n = 2 * l->M;
   const MarkerRange solid = {o->all->M - l->M, l->M};
-  const PetscReal scale = o->beta * PetscSqr(b->coupling->fluid->grid->h);
+  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   MeanMobility mobility;
   PetscFunctionBeginUser;
   if (IsBySolves(b)) {
@@ -117,8 +117,7 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
     PetscCall(MeanMobilityDestroy(&mobility));
   }
   for (PetscInt v = 0; v < l->bodies && l->rank == b->root; v++)
-    for (PetscInt j = 2 * l->start[v]; j < 2 * l->start[v + 1]; j++)
-      for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) A[j * n + i] += scale * o->N[i] * o->N[j];
+    ObstaclesBlock(o, v, h2, n, A + 2 * l->start[v] * (n + 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -209,23 +208,6 @@ PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The own numbers of bodies whose markers turn: to how they were when the factor was made, or (back) to how they are.
- */
-static void TurnObstacles(ObstacleBlock b, PetscBool back, PetscScalar F[]) {
-  const Obstacles o = b->obstacles;
-  const Layout l = o->layout;
-  for (PetscInt v = l->own; v < l->end; v++) {
-    if (!o->motion[v].turned) continue;
-    const PetscReal angle = ObstaclesPose(o, v, o->t).angle - ObstaclesPose(o, v, b->made_at).angle;
-    const PetscReal c = PetscCosReal(angle), s = (back ? 1 : -1) * PetscSinReal(angle);
-    for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k += 2) {
-      const PetscScalar x = F[k], y = F[k + 1];
-      F[k] = c * x - s * y;
-      F[k + 1] = s * x + c * y;
-    }
-  }
-}
-
 /* X = A^-1 K to response, and Mob -= h^2 K^T X of K h^2, on root. */
 static PetscErrorCode EliminateObstacles(ObstacleBlock b, PetscInt m, PetscReal K[], PetscReal Mob[]) {
   const PetscInt w = 2 * b->obstacles->layout->M;
@@ -276,7 +258,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  TurnObstacles(b, PETSC_FALSE, r);
+  ObstaclesTurn(b->obstacles, b->obstacles->t, b->made_at, r);
   PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
   if (root) DenseSingle(w, b->all, b->from);
   if (ObstacleBlockCoupled(b)) {
@@ -304,6 +286,6 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
   }
   for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
-  TurnObstacles(b, PETSC_TRUE, solid);
+  ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->t, solid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

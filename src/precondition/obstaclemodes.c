@@ -118,11 +118,11 @@ static PetscErrorCode AssembleCurve(ObstacleModes s, MeanMobility mobility, Pets
   const Layout l = o->layout;
   const PetscInt n = 2 * LayoutCount(l, v);
   const MarkerRange own = {o->all->M - l->M + l->start[v], n / 2};
-  const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h), *N = o->N + 2 * l->start[v];
+  const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
   PetscFunctionBeginUser;
   PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) D[j * n + i] = D[j * n + i] / h2 + o->beta * N[i] * N[j];
+  for (PetscInt k = 0; k < n * n; k++) D[k] /= h2;
+  ObstaclesBlock(o, v, 1, n, D);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

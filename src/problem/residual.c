@@ -55,8 +55,8 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   PetscCall(VecRestoreArrayRead(s->G, &G));
   PetscCall(Subtract(s->U, tension, y)); /* (3), (5) - U - k */
   if (q) PetscCall(Subtract(q->k, tension, y));
-  if (c->bodies->obstacles) ObstaclesPressure(c->bodies->obstacles, x + n, y + n); /* (5) beta N N^T F */
-  LawRows(c->law, x, x + tension, y + tension);                                    /* (4) Dm V/h^2 - g */
+  if (c->bodies->obstacles) ObstaclesRows(c->bodies->obstacles, x + n, y + n); /* (5) beta N N^T F */
+  LawRows(c->law, x, x + tension, y + tension);                                /* (4) Dm V/h^2 - g */
   if (q) PetscCall(Subtract(q->g, u->tension, y + tension));
   if (c->area) AreaRowReplace(c->area, q ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
   UnknownsScale(u, PETSC_FALSE, y);

@@ -48,7 +48,7 @@ static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
   PetscFunctionBeginUser;
   if (!b->obstacles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(known, &k));
-  PetscCall(ObstaclesData(b->obstacles, &s->scene->flow, k + BodiesFirstObstacle(b), s->report.failure));
+  PetscCall(ObstaclesTarget(b->obstacles, &s->scene->flow, k + BodiesFirstObstacle(b), s->report.failure));
   PetscCall(VecRestoreArray(known, &k));
   if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -93,52 +93,18 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Half the width of obstacle b, area over half its length, and how far its markers are from its middle. */
-static void Extent(Obstacles o, PetscInt b, PetscReal *half, PetscReal *reach) {
-  const PetscInt first = o->layout->start[b], n = LayoutCount(o->layout, b);
-  const PetscReal *X = o->rest + 2 * first, *middle = o->center + 2 * b;
-  PetscReal area = 0, length = 0;
-  *reach = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal *A = X + 2 * k, *B = X + 2 * ((k + 1) % n);
-    area += 0.5 * (A[0] * B[1] - B[0] * A[1]);
-    length += PetscHypotReal(B[0] - A[0], B[1] - A[1]);
-    *reach = PetscMax(*reach, PetscHypotReal(A[0] - middle[0], A[1] - middle[1]));
-  }
-  *half = 2 * area / length;
-}
-
-/* That no body steps over what it would run into: up to t it goes by at most half its width in the time dt. */
-static PetscErrorCode CheckStrides(Scheme s, PetscReal t, PetscReal dt) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  PetscFunctionBeginUser;
-  if (s->coupling->bodies->layout->bodies == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < o->layout->bodies && !*s->report.failure; b++) {
-    const ObstaclePose from = ObstaclesPose(o, b, t - dt), to = ObstaclesPose(o, b, t);
-    PetscReal half, reach, stride;
-    if (!o->motion[b].carried) continue;
-    Extent(o, b, &half, &reach);
-    stride = PetscHypotReal(to.center[0] - from.center[0], to.center[1] - from.center[1]);
-    if (o->motion[b].turned) stride += PetscAbsReal(to.angle - from.angle) * reach;
-    if (stride <= half) continue;
-    PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure),
-                            "obstacle %" PetscInt_FMT " would go by %.3g in one step, more than half its width, %.3g",
-                            b + 1, (double)stride, (double)half));
-    PetscCall(SchemeAdvise(s, "a smaller -time_step"));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* That moving bodies run into nothing that is solid, nor step over it. */
 static PetscErrorCode CheckBodies(Scheme s, PetscReal t) {
   const Obstacles o = s->coupling->bodies->obstacles;
+  const char *advice = "a -time_end before that, or other velocities";
   PetscFunctionBeginUser;
   if (!o || !o->moving) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstaclesCheck(o, s->fluid->grid, t, s->report.failure));
-  if (*s->report.failure)
-    PetscCall(SchemeAdvise(s, "a -time_end before that, or other velocities"));
-  else
-    PetscCall(CheckStrides(s, t, s->state.dt));
+  if (!*s->report.failure) {
+    advice = "a smaller -time_step";
+    PetscCall(ObstaclesCheckStride(o, t, s->state.dt, s->report.failure));
+  }
+  if (*s->report.failure) PetscCall(SchemeAdvise(s, advice));
   PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,28 @@
+/* How a solid body moves: not at all, or as it is told (-obstacle_moving). With the velocity U cos(ft) and the rotation
+   w cos(ft) its center is at c + U s, and it has turned by w s, s = sin(ft)/f or, with f = 0, t. That is exact at any
+   time, so there is nothing of it to integrate or to keep. */
+#pragma once
+#include "base/base.h"
+
+typedef struct {
+  PetscReal center[2];             /* c, about which it turns and torques are taken: the mean of its markers */
+  PetscReal velocity[2], rotation; /* of its surface, at time 0 */
+  PetscReal frequency;             /* f (1/time) */
+  PetscBool carried, turned;       /* its markers move; they turn, which those of a circle need not */
+} BodyMotion;
+
+/* Where a body is. */
+typedef struct {
+  PetscReal center[2];
+  PetscReal angle; /* by which it has turned since time 0 (radian) */
+} BodyPose;
+
+PETSC_EXTERN BodyPose MotionPose(const BodyMotion *motion, PetscReal t);
+
+/* MotionCarry - the n markers X at time t from those at rest, at time 0. MotionVelocity - the velocity U at time t of
+   the body where X is. MotionTurn - n vectors F of the body at time `from` become those of the same body at time `to`.
+   MotionStride - the farthest way of a point at the distance `reach` from the center, from one time to another. */
+PETSC_EXTERN void MotionCarry(const BodyMotion *motion, PetscReal t, PetscInt n, const PetscReal rest[], PetscReal X[]);
+PETSC_EXTERN void MotionVelocity(const BodyMotion *motion, PetscReal t, const PetscReal X[2], PetscReal U[2]);
+PETSC_EXTERN void MotionTurn(const BodyMotion *motion, PetscReal from, PetscReal to, PetscInt n, PetscReal F[]);
+PETSC_EXTERN PetscReal MotionStride(const BodyMotion *motion, PetscReal from, PetscReal to, PetscReal reach);
