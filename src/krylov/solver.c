@@ -148,36 +148,30 @@ static PetscErrorCode FreeReference(CoupledSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* k of the own obstacles, data[2w]. */
-static PetscErrorCode ObstacleReference(CoupledSolver s, const CoupledProblem *q, PetscScalar data[]) {
-  PetscScalar *a;
-  PetscFunctionBeginUser;
-  if (!s->coupling->bodies->obstacles) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(q->k, s->reduced->U));
-  PetscCall(VecGetArray(s->reduced->U, &a));
-  PetscCall(MobilityAddLayers(s->coupling->mobility, q->known.F, NULL, a));
-  PetscCall(PetscArraycpy(data, a + s->unknowns->velocity, s->unknowns->solid));
-  PetscCall(VecRestoreArray(s->reduced->U, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Norm of f, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
    before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
+  const Unknowns u = s->unknowns;
   const Forcing *f = q->known.f;
-  PetscScalar *a;
+  PetscScalar *a, *k;
   PetscReal squares = 0, norm;
   PetscFunctionBeginUser;
   PetscCall(VecSet(s->change, 0));
-  PetscCall(UnknownsPack(s->unknowns, NULL, NULL, q->g, s->change));
+  PetscCall(UnknownsPack(u, NULL, NULL, q->g, s->change));
   PetscCall(VecGetArray(s->change, &a));
-  PetscCall(ObstacleReference(s, q, a + s->unknowns->velocity));
-  UnknownsScale(s->unknowns, PETSC_FALSE, a);
+  if (s->coupling->bodies->obstacles) {
+    PetscCall(VecCopy(q->k, s->reduced->U));
+    PetscCall(VecGetArray(s->reduced->U, &k));
+    PetscCall(MobilityAddLayers(s->coupling->mobility, q->known.F, NULL, k));
+    PetscCall(PetscArraycpy(a + u->velocity, k + u->velocity, u->solid));
+    PetscCall(VecRestoreArray(s->reduced->U, &k));
+  }
+  UnknownsScale(u, PETSC_FALSE, a);
   PetscCall(VecRestoreArray(s->change, &a));
   PetscCall(VecNorm(s->change, NORM_2, &norm));
   PetscCall(GridAddSquares(f->grid, f->everywhere ? NULL : &f->window, f->values, &squares));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPIU_REAL, MPI_SUM, f->grid->comm));
-  s->reference = PetscSqrtReal(PetscSqr(norm) + PetscSqr(s->unknowns->length) * squares);
+  s->reference = PetscSqrtReal(PetscSqr(norm) + PetscSqr(u->length) * squares);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
