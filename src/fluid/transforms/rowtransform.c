@@ -140,8 +140,6 @@ void RowTransformForward(RowTransform t, const PetscScalar x[]) {
   const PetscInt n = t->n;
   if (IsZero(n, x))
     memset(t->modes, 0, (size_t)t->width * sizeof(double));
-  else if (t->matrix.matrix[0])
-    SineMatrixApply(&t->matrix, 0, x, t->modes);
   else if (t->base)
     SineForward(t, x);
   else if (t->sign != 0)
@@ -155,9 +153,7 @@ void RowTransformForward(RowTransform t, const PetscScalar x[]) {
 }
 
 void RowTransformBackward(RowTransform t, PetscScalar x[]) {
-  if (t->matrix.matrix[1])
-    SineMatrixApply(&t->matrix, 1, t->modes, x);
-  else if (t->base)
+  if (t->base)
     SineBackward(t, x);
   else if (t->sign != 0)
     HalfSampleBackward(t, x);
@@ -175,13 +171,10 @@ static PetscReal Eigenvalue(PetscReal argument) {
 }
 
 /* Periodic, and walls half a cell off. */
-static PetscErrorCode CreateWhole(RowTransform t, PetscBool periodic) {
+static PetscErrorCode CreateWhole(RowTransform t) {
   const PetscInt n = t->n;
+  const PetscBool periodic = t->sign == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  t->width = 2 * (n / 2 + 1);
-  t->modes = fftw_alloc_real((size_t)t->width);
-  t->line = fftw_alloc_real((size_t)n);
-  PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
   PetscCall(FourierCreate(n, periodic ? PETSC_FALSE : PETSC_TRUE, t->line, t->modes, &t->f[0]));
   for (PetscInt k = 0; k < t->width; k++) {
     const PetscInt mode = k / 2, wave = k % 2 ? n - mode : mode; /* cosine number, of 0 .. n - 1 */
@@ -197,11 +190,7 @@ static PetscErrorCode CreateSines(RowTransform t) {
   const PetscInt cells = t->n + 1;
   PetscInt N = cells, start = 0;
   PetscFunctionBeginUser;
-  t->width = t->n;
-  t->modes = fftw_alloc_real((size_t)t->width);
-  t->line = fftw_alloc_real((size_t)cells + 4);
   t->rest = fftw_alloc_real((size_t)t->n);
-  PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
   for (; N % 2 == 0 && N > 4; N /= 2) {
     const PetscInt half = N / 2;
     PetscCall(FourierCreate(half, PETSC_TRUE, t->modes + start, t->line, &t->f[t->levels++]));
@@ -224,38 +213,20 @@ static PetscErrorCode CreateSines(RowTransform t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A short row between walls. */
-static PetscErrorCode CreateMatrix(RowTransform t, SineMatrixKind kind) {
-  const PetscInt n = t->n;
-  PetscFunctionBeginUser;
-  t->width = n;
-  PetscCall(SineMatrixCreate(kind, n, &t->matrix));
-  t->modes = fftw_alloc_real((size_t)n);
-  PetscCall(PetscMalloc2(n, &t->lambda, n, &t->scale));
-  for (PetscInt k = 0; k < n; k++) {
-    t->lambda[k] = Eigenvalue(PETSC_PI / 2 * SineMatrixWave(kind, n, k));
-    t->scale[k] = 1;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode RowTransformCreate(Grid g, Field field, RowTransform *out) {
   const PetscReal c = GridWallFactor(field, 0);
+  const PetscBool sines = g->wall[0] && c == 0 ? PETSC_TRUE : PETSC_FALSE;
   RowTransform t;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&t));
   *out = t;
   t->n = g->columns[field];
-  if (g->wall[0] && t->n <= SINE_MATRIX_MOST)
-    PetscCall(CreateMatrix(t, c == 0  ? SINE_MATRIX_ENTRIES
-                              : c > 0 ? SINE_MATRIX_HALF_COSINES
-                                      : SINE_MATRIX_HALF_SINES));
-  else if (g->wall[0] && c == 0)
-    PetscCall(CreateSines(t));
-  else {
-    t->sign = g->wall[0] ? c : 0;
-    PetscCall(CreateWhole(t, g->wall[0] ? PETSC_FALSE : PETSC_TRUE));
-  }
+  t->width = sines ? t->n : 2 * (t->n / 2 + 1);
+  t->modes = fftw_alloc_real((size_t)t->width);
+  t->line = fftw_alloc_real((size_t)t->n + 5);
+  PetscCall(PetscMalloc2(t->width, &t->lambda, t->width, &t->scale));
+  t->sign = g->wall[0] ? c : 0;
+  PetscCall(sines ? CreateSines(t) : CreateWhole(t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -275,20 +246,15 @@ PetscErrorCode RowTransformSort(RowTransform t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Between walls Forward's rows are c sin(pi k j/N), k = 1 .. N - 1, with c = 2, or (2/N)^(1/2) of a matrix: sums of
-   squares c^2 N/2. Backward is its inverse over `scale`, so that its columns are these rows over that and `scale`. In a
-   period modes stand for a pair each but the mean and one that alternates from entry to entry. */
-static PetscReal SquareOfSines(RowTransform t) {
-  return t->base ? 4 : 2 / (PetscReal)(t->n + 1);
-}
-
+/* Between walls Forward's rows are 2 sin(pi k j/N), k = 1 .. N - 1: sums of squares 2 N. Backward is its inverse over
+   `scale`, so that its columns are these rows over that and `scale`. In a period modes stand for a pair each but the
+   mean and one that alternates from entry to entry. */
 PetscErrorCode RowTransformNorms(RowTransform t, PetscReal norm[]) {
   const PetscInt single = t->n % 2 ? t->width : t->width - 2;
-  const PetscBool walls = t->base || t->matrix.matrix[0] ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < t->width; k++)
-    norm[k] = walls ? 2 / (SquareOfSines(t) * (t->n + 1) * PetscSqr(t->scale[k]))
-                    : (k < 2 || k >= single ? 1 : 2) * (PetscReal)t->n;
+    norm[k] = t->base ? 1 / (2 * (PetscReal)(t->n + 1) * PetscSqr(t->scale[k]))
+                      : (k < 2 || k >= single ? 1 : 2) * (PetscReal)t->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -303,7 +269,7 @@ PetscErrorCode RowTransformEnds(RowTransform t, PetscReal first[], PetscReal las
   RowTransformForward(t, x);
   for (PetscInt k = 0; k < t->width; k++) {
     const PetscInt wave = PetscMin(k + 1, N - k - 1);
-    const PetscReal sine = PetscSqrtReal(SquareOfSines(t)) * PetscSinReal(PETSC_PI * wave / N);
+    const PetscReal sine = 2 * PetscSinReal(PETSC_PI * wave / N);
     first[k] = t->modes[k] < 0 ? -sine : sine;
     last[k] = k % 2 ? -first[k] : first[k];
   }
@@ -327,7 +293,6 @@ PetscErrorCode RowTransformDestroy(RowTransform *transform) {
   fftw_free(t->rest);
   fftw_free(t->unsorted);
   PetscCall(PetscFree(t->order));
-  PetscCall(SineMatrixDestroy(&t->matrix));
   PetscCall(PetscFree2(t->lambda, t->scale));
   PetscCall(PetscFree(*transform));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -7,13 +7,10 @@
      wall on an entry (u)     sines: the odd wave numbers by a half-sample sine transform of half the length, the even
                               ones by a transform of the same kind and half the length, and so on down
 
-   Short rows between walls are multiplied by the transform's matrix (sinematrix.h).
-
    Modes come in an order of the transform's own, and lambda is in that order, unless they are sorted. rowtransform.c
    has the formulas. */
 #pragma once
 #include "fluid/grid/grid.h"
-#include "fluid/transforms/sinematrix.h"
 #include <fftw3.h>
 
 #define ROW_LEVELS 24 /* halvings of a row, at most: 4 2^24 cells */
@@ -33,7 +30,6 @@ struct _p_RowTransform {
   double *modes;     /* [width] what Forward makes and Backward takes */
   double *line;      /* work, the other end of the Fourier transforms */
   PetscReal sign;    /* 1 cosines, -1 sines of half samples, 0 others */
-  SineMatrix matrix; /* the transform of a short row between walls, which needs none of the fields below */
   PetscInt levels;   /* sines on the entries: halvings */
   Fourier f[ROW_LEVELS];
   PetscInt base;    /* sines on the entries: cells left after the halvings, base - 1 entries; 0: another kind */
