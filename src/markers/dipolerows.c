@@ -30,19 +30,18 @@ PetscErrorCode DipoleRowsDestroy(DipoleRows *rows) {
 }
 
 /* Find the mean source of every row. */
-static void DipoleRowMeans(DipoleRows d, const DipoleList list, const PetscReal T[]) {
+static void DipoleRowMeans(DipoleRows d, StencilRows list, const PetscReal T[]) {
   const PetscInt n = d->grid->n[1];
   (void)PetscArrayzero(d->mean, n);
-  for (PetscInt k = 0; k < DIPOLE_SPOTS * list->M; k++) {
-    const DipoleSpot *s = &list->spot[k];
-    const DipoleLine *y = &s->line[1];
-    if (s->field != FIELD_P || !y->n) continue;
-    const PetscReal *weight = s->line[0].weight;
-    const PetscReal along = LanesSum(LanesAt(weight) + LanesAt(weight + LANES)) / (PetscReal)d->grid->n[0];
-    const PetscReal value = along * s->value * T[k / DIPOLE_SPOTS * DIPOLE_COUNT + (PetscInt)s->part];
-    for (PetscInt q = 0, j = y->first; q < y->n; q++, j++)
-      d->mean[j < 0 ? j + n : j < n ? j : j - n] += value * y->weight[q];
-  }
+  for (PetscInt k = 0; k < list->markers; k++)
+    for (int q = 0; q < DIPOLE_SPOTS; q++) {
+      const Stencil *s = &list->stencil[DIPOLE_SPOTS * k + q];
+      if (dipole_form.of[q].field != FIELD_P || !s->n[1]) continue;
+      const PetscReal along = LanesSum(LanesAt(s->weight[0]) + LanesAt(s->weight[0] + LANES));
+      const PetscReal value = T[DIPOLE_COUNT * k + dipole_form.of[q].part] * along / (PetscReal)d->grid->n[0];
+      for (PetscInt b = 0, j = s->first[1]; b < s->n[1]; b++, j++)
+        d->mean[j < 0 ? j + n : j < n ? j : j - n] += value * s->weight[1][b];
+    }
 }
 
 /* Replace the sources of `count` rows by b along x, with zero mean or, between walls, zero on the wall. A sum
@@ -89,19 +88,20 @@ static void DipoleRowsSetWindow(DipoleRows d, const PetscInt window[2]) {
   for (int c = 0; c < 2; c++) d->window[c] = window[c];
 }
 
-PetscErrorCode DipoleRowsSet(DipoleRows d, const DipoleList list, const PetscReal T[], PetscBool own,
+PetscErrorCode DipoleRowsSet(DipoleRows d, StencilRows list, const PetscReal T[], PetscBool own,
                              const PetscReal profile[], const PetscReal mean[2]) {
   const Grid g = d->grid;
-  PetscInt j;
+  PetscInt j, window[2];
   PetscFunctionBeginUser;
   d->own = own;
   DipoleRowMeans(d, list, T);
-  DipoleRowsSetWindow(d, list->window);
+  DipoleListWindow(list, window);
+  DipoleRowsSetWindow(d, window);
   for (j = d->window[0]; j < d->window[1]; j++)
     for (int f = own ? FIELD_U : FIELD_P; f <= FIELD_P; f++) {
       PetscScalar *row = DipoleRow(d, (Field)f, j);
       for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
-      DipoleListAddRow(list, (Field)f, j, T, row);
+      StencilRowSpread(list, (Field)f, j, 1, T, row);
     }
   for (j = d->window[0]; j + AT_ONCE <= d->window[1]; j += AT_ONCE) DipoleRowSums(AT_ONCE, d, j);
   for (; j < d->window[1]; j++) DipoleRowSums(1, d, j);

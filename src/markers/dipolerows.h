@@ -11,7 +11,7 @@
 
    Order: DipoleRowsSet, then DipoleRowsAddForce and DipoleRowsAddVelocity for the rows of one solve. */
 #pragma once
-#include "markers/dipolelist.h"
+#include "markers/dipoles.h"
 
 typedef struct _p_DipoleRows *DipoleRows;
 struct _p_DipoleRows {
@@ -31,7 +31,7 @@ PETSC_EXTERN PetscErrorCode DipoleRowsDestroy(DipoleRows *rows);
 /* DipoleRowsSet - the dipoles of the list with tensors T[3M], whose sources add up to zero. own: with their own forces;
    else their sources alone. The mean flow of u is mean[0] profile[rows of all ranks] or, where profile is NULL and the
    box is periodic both ways, that of u and v is mean[2]. Not collective. */
-PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, const DipoleList list, const PetscReal T[], PetscBool own,
+PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, StencilRows list, const PetscReal T[], PetscBool own,
                                           const PetscReal profile[], const PetscReal mean[2]);
 
 /* DipoleRowsAddForce - row += nu L_u b, and the dipoles' own force where `own` was set, in local row j of u or v; of u

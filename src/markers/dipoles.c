@@ -24,94 +24,125 @@ static void DipoleWrap(Grid g, Stencil s[DIPOLE_COUNT]) {
     }
 }
 
-/* Keep the entries of a line that are unknowns of the field: faces on walls are not. */
-static void LineClip(Grid g, Field field, int dir, DipoleLine *line) {
+/* Keep the entries along dir that are unknowns of the field: faces on walls are not. */
+static void SpotClip(Grid g, Field field, int dir, Stencil *spot) {
   const PetscInt end = (int)field == dir ? g->n[dir] - 1 : g->n[dir];
-  PetscInt skip = 0;
-  if (!g->wall[dir] || (line->first >= 0 && line->first + line->n <= end)) return;
-  while (skip < line->n && line->first + skip < 0) skip++;
-  while (line->n > skip && line->first + line->n > end) line->n--;
-  line->n -= skip;
-  line->first += skip;
-  for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = k < line->n ? line->weight[k + skip] : 0;
+  PetscInt *first = &spot->first[dir], *n = &spot->n[dir], skip = 0;
+  if (!g->wall[dir] || (*first >= 0 && *first + *n <= end)) return;
+  while (skip < *n && *first + skip < 0) skip++;
+  while (*n > skip && *first + *n > end) --*n;
+  *n -= skip;
+  *first += skip;
+  for (PetscInt k = 0; k < STENCIL_POINTS; k++) spot->weight[dir][k] = k < *n ? spot->weight[dir][k + skip] : 0;
 }
 
-/* A line of a stencil's weights along dir (before < 0), or a line of the differences of neighbouring weights. The first
-   difference belongs to the stencil's first entry (before = 0) or to the entry before it (before = 1). */
-static void LineMake(Grid g, Field field, const Stencil *s, int dir, PetscInt before, DipoleLine *line) {
-  const PetscInt difference = before >= 0 ? 1 : 0;
-  PetscReal w[DIPOLE_POINTS + 1] = {0};
-  for (PetscInt k = 0; k < s->n[dir]; k++) w[k + 1] = s->weight[dir][k];
-  line->first = s->first[dir] - (before > 0);
-  line->n = s->n[dir] + difference;
-  for (PetscInt k = 0; k < DIPOLE_POINTS; k++) line->weight[k] = w[k + 1] - difference * w[k];
-  LineClip(g, field, dir, line);
+enum { PLAIN = -1 };
+
+/* `factor` times a stencil's weights along dir (before PLAIN), or times the differences of neighbouring weights. The
+   first difference belongs to the stencil's first entry (before = 0) or to the entry before it (before = 1). */
+static void SpotMake(Grid g, Field field, const Stencil *s, int dir, PetscInt before, PetscReal factor, Stencil *spot) {
+  const PetscInt difference = before == PLAIN ? 0 : 1;
+  PetscReal w[STENCIL_POINTS + 1] = {0};
+  for (PetscInt k = 0; k < s->n[dir]; k++) w[k + 1] = factor * s->weight[dir][k];
+  spot->first[dir] = s->first[dir] - (before == 1);
+  spot->n[dir] = s->n[dir] + difference;
+  for (PetscInt k = 0; k < STENCIL_POINTS; k++) spot->weight[dir][k] = w[k + 1] - difference * w[k];
+  SpotClip(g, field, dir, spot);
 }
 
-void DipoleSpotsOf(Grid g, PetscReal nu, Stencil s[DIPOLE_COUNT], DipoleSpot spot[DIPOLE_SPOTS]) {
+const StencilForm dipole_form = {.stencils = DIPOLE_SPOTS,
+                                 .parts = DIPOLE_COUNT,
+                                 .of = {{FIELD_U, DIPOLE_XX},
+                                        {FIELD_U, DIPOLE_XY},
+                                        {FIELD_V, DIPOLE_XY},
+                                        {FIELD_V, DIPOLE_YY},
+                                        {FIELD_P, DIPOLE_XX},
+                                        {FIELD_P, DIPOLE_YY}}};
+
+void DipoleSpotsOf(Grid g, PetscReal nu, Stencil s[DIPOLE_COUNT], Stencil spot[DIPOLE_SPOTS]) {
   const PetscReal force = -nu / PetscPowRealInt(g->h, 3), half = -0.5 / PetscSqr(g->h);
-  enum { PLAIN = -1 };
-  static const struct {
-    Field field;
-    DipolePart part;
-    PetscInt before[2]; /* argument `before` of LineMake along x and y */
-  } form[DIPOLE_SPOTS] = {{FIELD_U, DIPOLE_XX, {1, PLAIN}},     {FIELD_U, DIPOLE_XY, {PLAIN, 0}},
-                          {FIELD_V, DIPOLE_XY, {0, PLAIN}},     {FIELD_V, DIPOLE_YY, {PLAIN, 1}},
-                          {FIELD_P, DIPOLE_XX, {PLAIN, PLAIN}}, {FIELD_P, DIPOLE_YY, {PLAIN, PLAIN}}};
+  static const PetscInt before[DIPOLE_SPOTS][2] = {{1, PLAIN}, {PLAIN, 0},     {0, PLAIN},
+                                                   {PLAIN, 1}, {PLAIN, PLAIN}, {PLAIN, PLAIN}};
   DipoleWrap(g, s);
   for (int q = 0; q < DIPOLE_SPOTS; q++) {
-    spot[q].field = form[q].field;
-    spot[q].part = form[q].part;
-    spot[q].value = form[q].field == FIELD_P ? half : force;
-    for (int dir = 0; dir < 2; dir++)
-      LineMake(g, form[q].field, &s[form[q].part], dir, form[q].before[dir], &spot[q].line[dir]);
+    const Field field = dipole_form.of[q].field;
+    const Stencil *part = &s[dipole_form.of[q].part];
+    SpotMake(g, field, part, 0, before[q][0], 1, &spot[q]);
+    SpotMake(g, field, part, 1, before[q][1], field == FIELD_P ? half : force, &spot[q]);
   }
 }
 
-void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]) {
+void DipoleSpots(Grid g, PetscReal nu, const PetscReal X[2], Stencil spot[DIPOLE_SPOTS]) {
   Stencil s[DIPOLE_COUNT];
   DipoleStencilsUnwrapped(g, X, s);
   DipoleSpotsOf(g, nu, s, spot);
 }
 
-/* First moment of a line's weights along dir about the middle of the box (length), and the sum of the weights. */
-static PetscReal LineMoment(Grid g, const DipoleSpot *s, int dir, PetscReal *sum) {
-  const DipoleLine *line = &s->line[dir];
-  const PetscReal half = (int)s->field == dir ? 1 : 0.5;
+/* First moment of a spot's weights along dir about the middle of the box (length), and the sum of the weights. */
+static PetscReal SpotMoment(Grid g, Field field, const Stencil *s, int dir, PetscReal *sum) {
+  const PetscReal half = (int)field == dir ? 1 : 0.5;
   PetscReal moment = 0;
   *sum = 0;
-  for (PetscInt k = 0; k < line->n; k++) {
-    *sum += line->weight[k];
-    moment += line->weight[k] * (line->first + k + half - 0.5 * g->n[dir]) * g->h;
+  for (PetscInt k = 0; k < s->n[dir]; k++) {
+    *sum += s->weight[dir][k];
+    moment += s->weight[dir][k] * (s->first[dir] + k + half - 0.5 * g->n[dir]) * g->h;
   }
   return moment;
 }
 
-/* Sum of the weights of a line in the rows next to the walls along dir. */
-static PetscReal LineEnds(Grid g, const DipoleLine *line, int dir) {
+/* Sum of a spot's weights in the rows next to the walls along dir. */
+static PetscReal SpotEnds(Grid g, const Stencil *s, int dir) {
   PetscReal sum = 0;
-  for (PetscInt k = 0; k < line->n; k++)
-    if (line->first + k == 0 || line->first + k == g->n[dir] - 1) sum += line->weight[k];
+  for (PetscInt k = 0; k < s->n[dir]; k++)
+    if (s->first[dir] + k == 0 || s->first[dir] + k == g->n[dir] - 1) sum += s->weight[dir][k];
   return sum;
 }
 
 void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT], int dir,
                      PetscReal shortfall[2]) {
   const PetscReal cell = PetscSqr(g->h);
-  DipoleSpot spot[DIPOLE_SPOTS];
+  Stencil spot[DIPOLE_SPOTS];
   shortfall[0] = shortfall[1] = 0;
   if (!g->wall[dir] || PetscMin(X[dir] - g->lo[dir], g->hi[dir] - X[dir]) >= (KERNEL_WALL_CELLS + 1) * g->h) return;
   shortfall[1 - dir] = nu * T[DIPOLE_XY];
   shortfall[dir] = nu * T[dir ? DIPOLE_YY : DIPOLE_XX];
   DipoleSpots(g, nu, X, spot);
   for (int q = 0; q < DIPOLE_SPOTS; q++) {
+    const Field field = dipole_form.of[q].field;
     PetscReal along, sum;
-    (void)LineMoment(g, &spot[q], 1 - dir, &along);
-    const PetscReal value = T[spot[q].part] * spot[q].value, part = cell * value * along;
-    const PetscReal moment = LineMoment(g, &spot[q], dir, &sum);
-    if (spot[q].field == FIELD_P)
-      shortfall[dir] += 0.5 * nu * part * LineEnds(g, &spot[q].line[dir], dir) * g->n[dir];
+    (void)SpotMoment(g, field, &spot[q], 1 - dir, &along);
+    const PetscReal part = cell * T[dipole_form.of[q].part] * along, moment = SpotMoment(g, field, &spot[q], dir, &sum);
+    if (field == FIELD_P)
+      shortfall[dir] += 0.5 * nu * part * SpotEnds(g, &spot[q], dir) * g->n[dir];
     else
-      shortfall[spot[q].field] -= part * moment;
+      shortfall[field] -= part * moment;
   }
+}
+
+/* With a period a row may be in the list more than once, and `window` may reach beyond this rank's rows. */
+void DipoleListWindow(StencilRows list, PetscInt window[2]) {
+  const PetscInt end = list->grid->rows[FIELD_U] + list->above;
+  window[0] = end;
+  window[1] = -list->below;
+  for (int f = 0; f < 3; f++)
+    for (PetscInt j = -list->below; j < end; j++) {
+      const PetscInt *start = list->start[f] + j + list->below;
+      if (start[0] == start[1]) continue;
+      window[0] = PetscMin(window[0], j);
+      window[1] = PetscMax(window[1], j + 1);
+    }
+}
+
+PetscErrorCode DipoleListSpread(StencilRows list, const PetscReal T[], Vec w, Vec source) {
+  const Grid g = list->grid;
+  PetscScalar *a[3];
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(w, &a[FIELD_U]));
+  PetscCall(VecGetArray(source, &a[FIELD_P]));
+  a[FIELD_V] = a[FIELD_U] + GridLocalU(g);
+  for (int f = 0; f < 3; f++)
+    for (PetscInt j = 0; j < g->rows[f]; j++) StencilRowSpread(list, (Field)f, j, 1, T, a[f] + j * g->columns[f]);
+  PetscCall(VecRestoreArray(source, &a[FIELD_P]));
+  PetscCall(VecRestoreArray(w, &a[FIELD_U]));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

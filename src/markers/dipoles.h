@@ -10,7 +10,6 @@
    inside the curve and nothing outside. At a wall weights are folded smoothly (wallfold.h). Every rank has all tensors
    and adds them to its own rows; nothing crosses ranks. */
 #pragma once
-#include "base/lanes.h"
 #include "markers/markers.h"
 
 typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
@@ -19,48 +18,30 @@ typedef enum { DIPOLE_XX, DIPOLE_YY, DIPOLE_XY, DIPOLE_COUNT } DipolePart;
    the part xy is the upper right corner of cell (i, j). Not collective. */
 PETSC_EXTERN void DipoleStencilsUnwrapped(Grid grid, const PetscReal X[2], Stencil stencil[DIPOLE_COUNT]);
 
-/* A spot is what one part of a marker's tensor adds to the entries of a field,
-
-     value * line[0].weight_i * line[1].weight_j,   entries first + i, first + j along x and y.
-
-   The weights of a line are zero from the n-th on. */
-#define DIPOLE_POINTS (2 * LANES) /* KERNEL_MAX_POINTS + 1, rounded up to whole vectors */
-typedef struct {
-  PetscInt first, n;
-  PetscReal weight[DIPOLE_POINTS];
-} DipoleLine;
-typedef struct {
-  Field field;
-  DipolePart part;
-  PetscReal value;
-  DipoleLine line[2];
-} DipoleSpot;
+/* A spot is the stencil by which one part of a marker's tensor adds to the entries of a field. */
 #define DIPOLE_SPOTS 6
+PETSC_EXTERN const StencilForm dipole_form; /* of the spots of a marker */
 
 /* DipoleSpots - spots of a marker at X for unit parts of a tensor T (velocity times length): on the faces and in the
    cells
 
      -nu DIV T/h^2,      -(T_xx + T_yy)/(2 h^2) = G^T of the velocity.
 
-   DipoleSpotsOf - spots from a marker's unwrapped stencils, which are overwritten. DipoleEntry - column (direction 0)
-   or row (direction 1) of entry k of a spot, counted over all ranks' rows. DipoleAddRow - add value times the spot's
-   weights along x to a row of the grid. Not collective. */
-PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], DipoleSpot spot[DIPOLE_SPOTS]);
-PETSC_EXTERN void DipoleSpotsOf(Grid grid, PetscReal nu, Stencil stencil[DIPOLE_COUNT], DipoleSpot spot[DIPOLE_SPOTS]);
-static inline PetscInt DipoleEntry(Grid g, const DipoleSpot *s, int direction, PetscInt k) {
-  const PetscInt entry = s->line[direction].first + k, n = g->n[direction];
-  return g->wall[direction] ? entry : (entry + n) % n;
+   DipoleSpotsOf - spots from a marker's unwrapped stencils, which are overwritten. Not collective. */
+PETSC_EXTERN void DipoleSpots(Grid grid, PetscReal nu, const PetscReal X[2], Stencil spot[DIPOLE_SPOTS]);
+PETSC_EXTERN void DipoleSpotsOf(Grid grid, PetscReal nu, Stencil stencil[DIPOLE_COUNT], Stencil spot[DIPOLE_SPOTS]);
+
+/* The spots of all dipoles by rows, with the rows next to this rank's that forces on the row above it need. */
+#define DIPOLE_BELOW 1
+#define DIPOLE_ABOVE 2
+static inline PetscErrorCode DipoleListCreate(Grid grid, StencilRows *list) {
+  return StencilRowsCreate(grid, &dipole_form, DIPOLE_BELOW, DIPOLE_ABOVE, list);
 }
 
-static inline void DipoleAddRow(Grid g, const DipoleSpot *s, PetscReal value, PetscScalar row[]) {
-  const DipoleLine *x = &s->line[0];
-  PetscScalar *at = row + x->first;
-  if (x->first >= 0 && x->first + DIPOLE_POINTS <= g->columns[s->field]) {
-    LanesPut(LanesAt(at) + value * LanesAt(x->weight), at);
-    LanesPut(LanesAt(at + LANES) + value * LanesAt(x->weight + LANES), at + LANES);
-  } else
-    for (PetscInt k = 0; k < x->n; k++) row[DipoleEntry(g, s, 0, k)] += value * x->weight[k];
-}
+/* DipoleListWindow - local rows that spots reach, those next to this rank's included. DipoleListSpread - add what the
+   tensors T[DIPOLE_COUNT M] give to the own rows of the velocity w and of source. Not collective. */
+PETSC_EXTERN void DipoleListWindow(StencilRows list, PetscInt window[2]);
+PETSC_EXTERN PetscErrorCode DipoleListSpread(StencilRows list, const PetscReal T[], Vec w, Vec source);
 
 /* DipoleShortfall - nu T less the first moments along dir of the x and the y component of the dipole's force. The
    component along dir has the pressure that the dipole's source adds in the rows next to the walls, times the length of

@@ -114,9 +114,9 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
     for (PetscInt k = 0; k < 2 * m->layout->M; k++) MarkerFoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
   }
   for (PetscInt k = 0; k < 2 * m->layout->M; k++) /* weights are padded to whole vectors */
-    for (PetscInt a = m->stencil[k].n[0]; a < KERNEL_MAX_POINTS; a++) m->stencil[k].weight[0][a] = 0;
+    for (PetscInt a = m->stencil[k].n[0]; a < STENCIL_POINTS; a++) m->stencil[k].weight[0][a] = 0;
   MarkersSetWindow(m);
-  PetscCall(MarkerRowsPlace(m->rows, m->stencil));
+  PetscCall(StencilRowsPlace(m->rows, m->layout->M, m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,7 +139,8 @@ PetscErrorCode MarkersSpread(Markers m, PetscReal alpha, Vec F, Vec w) {
   PetscCall(LayoutGatherVec(m->layout, F, m->force));
   PetscCall(VecGetArray(w, &wa));
   for (int f = FIELD_U; f <= FIELD_V; f++)
-    MarkerRowsSpread(m->rows, (Field)f, alpha, m->force, wa + GridRowStart(m->grid, (Field)f, 0));
+    for (PetscInt j = m->window.rows[0]; j < PetscMin(m->window.rows[1], m->grid->rows[f]); j++)
+      StencilRowSpread(m->rows, (Field)f, j, alpha, m->force, wa + GridRowStart(m->grid, (Field)f, j));
   PetscCall(VecRestoreArray(w, &wa));
   PetscCall(PetscLogEventEnd(m->spread, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -158,7 +159,7 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = m->window.rows[0]; j < PetscMin(m->window.rows[1], m->grid->rows[f]); j++)
-      MarkerRowInterpolate(m->rows, (Field)f, j, wa + GridRowStart(m->grid, (Field)f, j), m->part);
+      StencilRowInterpolate(m->rows, (Field)f, j, wa + GridRowStart(m->grid, (Field)f, j), m->part);
   PetscCall(VecRestoreArrayRead(w, &wa));
   PetscCall(VecGetArray(U, &own));
   PetscCall(LayoutSum(m->layout, 2, m->part, own));
@@ -191,6 +192,8 @@ static PetscErrorCode MultTranspose_E(Mat E, Vec F, Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static const StencilForm marker_form = {.stencils = 2, .parts = 2, .of = {{FIELD_U, 0}, {FIELD_V, 1}}};
+
 PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool folded, Markers *out) {
   Markers m;
   const PetscInt slab = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
@@ -209,7 +212,7 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->needs = folded ? "0.25" : "3";
   m->stencil = m->plain;
   if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));
-  PetscCall(MarkerRowsCreate(g, 2 * l->M, &m->rows));
+  PetscCall(StencilRowsCreate(g, &marker_form, 0, 1, &m->rows));
   PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT, (void (*)(void))Mult_E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT_TRANSPOSE, (void (*)(void))MultTranspose_E));
@@ -229,7 +232,7 @@ PetscErrorCode MarkersDestroy(Markers *markers) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   if (m->folded) PetscCall(PetscFree(m->stencil));
   PetscCall(PetscFree4(m->X, m->plain, m->force, m->part));
-  PetscCall(MarkerRowsDestroy(&m->rows));
+  PetscCall(StencilRowsDestroy(&m->rows));
   PetscCall(MatDestroy(&m->E));
   PetscCall(PetscFree(*markers));
   PetscFunctionReturn(PETSC_SUCCESS);

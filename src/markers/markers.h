@@ -28,7 +28,7 @@ struct _p_Markers {
   const char *needs;  /* `least` as text */
   Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
   Stencil *plain;     /* [2M]: stencils that are neither folded nor scaled */
-  MarkerRows rows;    /* the rows of this rank that each stencil reaches */
+  StencilRows rows;   /* the stencils by rows, those of the row above this rank's included */
   GridWindow window;  /* this rank's faces that all stencils reach, with the rows and columns next to them */
   PetscScalar *force; /* [2M] work: forces of all markers */
   PetscScalar *part;  /* [2M] work: velocities of all markers, summed over this rank's rows */

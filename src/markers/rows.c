@@ -1,125 +1,130 @@
 #include "markers/rows.h"
-#include "base/lanes.h"
 
 #define AHEAD 16 /* entries from the one in use to the one that is fetched into the cache */
 
-/* The local row of entry b of a stencil: one of this rank's rows or the row above them; -1 for any other row. Beyond a
-   wall only zero weights can fall: markers keep three cells away, or stencils are folded. */
-static inline PetscInt StencilLocalRow(const Grid g, int comp, const Stencil *s, PetscInt b) {
-  PetscInt j = s->first[1] + b;
-  if (!g->wall[1] && j >= g->n[1]) j -= g->n[1];
-  j -= g->first;
-  if (j >= 0 && j <= g->rows[comp]) return j;
-  return !g->wall[1] && j + g->n[1] == g->rows[comp] ? g->rows[comp] : -1; /* the row above, across the periodic seam */
+static PetscInt StencilRowsCount(StencilRows r) {
+  return r->grid->rows[FIELD_U] + r->below + r->above;
 }
 
-PetscErrorCode MarkerRowsPlace(MarkerRows r, const Stencil stencil[]) {
-  const Grid g = r->grid;
-  PetscFunctionBeginUser;
-  r->stencil = stencil;
-  for (int c = 0; c < 2; c++) {
-    PetscInt *start = r->start[c], j;
-    PetscCall(PetscArrayzero(start, g->rows[c] + 2));
-    for (PetscInt k = c; k < r->stencils; k += 2)
-      for (PetscInt b = 0; b < stencil[k].n[1]; b++)
-        if ((j = StencilLocalRow(g, c, &stencil[k], b)) >= 0) start[j + 1]++;
-    for (j = 0; j <= g->rows[c]; j++) start[j + 1] += start[j];
-    if (start[g->rows[c] + 1] > r->room[c]) {
-      r->room[c] = start[g->rows[c] + 1] * 11 / 10;
-      PetscCall(PetscFree(r->entry[c]));
-      PetscCall(PetscCalloc1(r->room[c] + AHEAD, &r->entry[c]));
-    }
-    for (PetscInt k = c; k < r->stencils; k += 2)
-      for (PetscInt b = 0; b < stencil[k].n[1]; b++)
-        if ((j = StencilLocalRow(g, c, &stencil[k], b)) >= 0)
-          r->entry[c][start[j]++] = (RowEntry){.stencil = k, .entry = b};
-    for (j = g->rows[c] + 1; j > 0; j--) start[j] = start[j - 1]; /* start[j] has become the start of row j + 1 */
-    start[0] = 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Fetch a stencil that is used some entries later: the stencils of a row lie far apart in memory. */
-static inline void RowPrefetch(MarkerRows r, Field f, PetscInt e) {
-  const char *next = (const char *)&r->stencil[r->entry[f][e + AHEAD].stencil];
-  __builtin_prefetch(next);
-  __builtin_prefetch(next + 64);
-}
-
-/* row += force times the weights of a stencil along x. */
-static inline void RowAddStencil(const Grid g, PetscInt columns, const Stencil *s, PetscScalar force,
-                                 PetscScalar row[]) {
-  const PetscInt i0 = s->first[0];
-  const PetscReal *weight = s->weight[0];
-  if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
-    LanesPut(LanesAt(row + i0) + force * LanesAt(weight), row + i0);
-    for (PetscInt a = LANES; a < s->n[0]; a++) row[i0 + a] += force * weight[a];
-  } else
-    for (PetscInt a = 0; a < s->n[0]; a++) {
-      const PetscInt i = g->wall[0] ? i0 + a : (i0 + a) % columns;
-      if (i >= 0 && i < columns) row[i] += force * weight[a];
-    }
-}
-
-void MarkerRowSpread(MarkerRows r, Field f, PetscInt j, PetscReal alpha, const PetscScalar F[], PetscScalar row[]) {
-  for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
-    const RowEntry at = r->entry[f][e];
-    const Stencil *s = &r->stencil[at.stencil];
-    RowPrefetch(r, f, e);
-    RowAddStencil(r->grid, r->grid->columns[f], s, alpha * F[at.stencil] * s->weight[1][at.entry], row);
-  }
-}
-
-void MarkerRowsSpread(MarkerRows r, Field f, PetscReal alpha, const PetscScalar F[], PetscScalar all[]) {
-  const Grid g = r->grid;
-  const PetscInt columns = g->columns[f];
-  for (PetscInt k = f; k < r->stencils; k += 2) {
-    const Stencil *s = &r->stencil[k];
-    for (PetscInt b = 0; b < s->n[1]; b++) {
-      const PetscInt j = StencilLocalRow(g, f, s, b);
-      if (j >= 0 && j < g->rows[f]) RowAddStencil(g, columns, s, alpha * F[k] * s->weight[1][b], all + j * columns);
-    }
-  }
-}
-
-void MarkerRowInterpolate(MarkerRows r, Field f, PetscInt j, const PetscScalar row[], PetscScalar U[]) {
-  const PetscInt columns = r->grid->columns[f];
-  for (PetscInt e = r->start[f][j]; e < r->start[f][j + 1]; e++) {
-    const RowEntry at = r->entry[f][e];
-    const Stencil *s = &r->stencil[at.stencil];
-    RowPrefetch(r, f, e);
-    const PetscInt i0 = s->first[0];
-    const PetscReal *weight = s->weight[0];
-    PetscScalar line = 0;
-    if (i0 >= 0 && i0 + LANES <= columns && i0 + s->n[0] <= columns) {
-      line = LanesSum(LanesAt(row + i0) * LanesAt(weight));
-      for (PetscInt a = LANES; a < s->n[0]; a++) line += row[i0 + a] * weight[a];
-    } else
-      for (PetscInt a = 0; a < s->n[0]; a++) {
-        const PetscInt i = r->grid->wall[0] ? i0 + a : (i0 + a) % columns;
-        if (i >= 0 && i < columns) line += row[i] * weight[a];
-      }
-    U[at.stencil] += line * s->weight[1][at.entry];
-  }
-}
-
-PetscErrorCode MarkerRowsCreate(Grid g, PetscInt stencils, MarkerRows *out) {
-  MarkerRows r;
+PetscErrorCode StencilRowsCreate(Grid g, const StencilForm *form, PetscInt below, PetscInt above, StencilRows *out) {
+  StencilRows r;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&r));
   *out = r;
   r->grid = g;
-  r->stencils = stencils;
-  PetscCall(PetscCalloc2(g->rows[FIELD_U] + 2, &r->start[0], g->rows[FIELD_V] + 2, &r->start[1]));
+  r->form = form;
+  r->below = below;
+  r->above = above;
+  for (int f = 0; f < 3; f++) PetscCall(PetscCalloc1(StencilRowsCount(r) + 2, &r->start[f]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MarkerRowsDestroy(MarkerRows *rows) {
-  MarkerRows r = *rows;
+PetscErrorCode StencilRowsDestroy(StencilRows *rows) {
   PetscFunctionBeginUser;
-  if (!r) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int c = 0; c < 2; c++) PetscCall(PetscFree(r->entry[c]));
-  PetscCall(PetscFree2(r->start[0], r->start[1]));
+  if (!*rows) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int f = 0; f < 3; f++) {
+    PetscCall(PetscFree((*rows)->start[f]));
+    PetscCall(PetscFree((*rows)->entry[f]));
+  }
   PetscCall(PetscFree(*rows));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Count the rows of stencil k in start[j + 2] or, with put, put its entries at start[j + 1]. Across a periodic seam a
+   row may be in the list more than once. */
+static void StencilRowsVisit(StencilRows r, PetscInt k, PetscBool put) {
+  const Grid g = r->grid;
+  const Stencil *s = &r->stencil[k];
+  const PetscInt q = k % r->form->stencils, source = k / r->form->stencils * r->form->parts + r->form->of[q].part;
+  const PetscInt rows = StencilRowsCount(r), period = g->wall[1] ? PETSC_MAX_INT / 2 : g->n[1];
+  PetscInt *start = r->start[r->form->of[q].field], first = s->first[1] - g->first + r->below;
+  if (!g->wall[1]) first = (first % period + period) % period;
+  for (PetscInt b = 0; b < s->n[1]; b++, first = first + 1 < period ? first + 1 : 0)
+    for (PetscInt j = first; j >= 0 && j < rows; j += period)
+      if (put)
+        r->entry[r->form->of[q].field][start[j + 1]++] = (RowEntry){k, source, s->weight[1][b]};
+      else
+        start[j + 2]++;
+}
+
+PetscErrorCode StencilRowsPlace(StencilRows r, PetscInt markers, const Stencil stencil[]) {
+  const PetscInt rows = StencilRowsCount(r), stencils = r->form->stencils * markers;
+  PetscFunctionBeginUser;
+  r->markers = markers;
+  r->stencil = stencil;
+  for (int f = 0; f < 3; f++) PetscCall(PetscArrayzero(r->start[f], rows + 2));
+  for (PetscInt k = 0; k < stencils; k++) StencilRowsVisit(r, k, PETSC_FALSE);
+  for (int f = 0; f < 3; f++) {
+    for (PetscInt j = 0; j < rows; j++) r->start[f][j + 2] += r->start[f][j + 1];
+    if (r->start[f][rows + 1] <= r->room[f]) continue;
+    r->room[f] = r->start[f][rows + 1] * 11 / 10;
+    PetscCall(PetscFree(r->entry[f]));
+    PetscCall(PetscCalloc1(r->room[f] + AHEAD, &r->entry[f]));
+  }
+  for (PetscInt k = 0; k < stencils; k++) StencilRowsVisit(r, k, PETSC_TRUE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The stencil of an entry; that of some entries later is fetched, as the stencils of a row lie far apart in memory. */
+static inline const Stencil *RowStencil(StencilRows r, const RowEntry *e) {
+  const char *next = (const char *)&r->stencil[e[AHEAD].stencil];
+  __builtin_prefetch(next);
+  __builtin_prefetch(next + 64);
+  return &r->stencil[e->stencil];
+}
+
+/* Whether all points of a stencil, zeros included, are next to one another in a row. */
+static inline PetscBool RowIsWhole(const Stencil *s, PetscInt columns) {
+  return s->first[0] >= 0 && s->first[0] + STENCIL_POINTS <= columns ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The column of point a of a stencil; -1: there is none, and the weight is zero. */
+static inline PetscInt RowColumn(const Grid g, const Stencil *s, PetscInt a, PetscInt columns) {
+  const PetscInt i = s->first[0] + a;
+  if (!g->wall[0]) return (i + columns) % columns;
+  return i >= 0 && i < columns ? i : -1;
+}
+
+/* row += force times the weights of an entry's stencil along x. */
+static inline void RowAddEntry(StencilRows r, PetscInt columns, const RowEntry *e, PetscReal alpha,
+                               const PetscScalar F[], PetscScalar row[]) {
+  const Stencil *s = RowStencil(r, e);
+  const PetscReal force = alpha * F[e->source] * e->value, *weight = s->weight[0];
+  PetscScalar *at = row + s->first[0];
+  if (RowIsWhole(s, columns)) {
+    LanesPut(LanesAt(at) + force * LanesAt(weight), at);
+    LanesPut(LanesAt(at + LANES) + force * LanesAt(weight + LANES), at + LANES);
+  } else
+    for (PetscInt a = 0; a < s->n[0]; a++) {
+      const PetscInt i = RowColumn(r->grid, s, a, columns);
+      if (i >= 0) row[i] += force * weight[a];
+    }
+}
+
+void StencilRowSpread(StencilRows r, Field f, PetscInt j, PetscReal alpha, const PetscScalar F[], PetscScalar row[]) {
+  const PetscInt *start = r->start[f] + j + r->below, columns = r->grid->columns[f];
+  const RowEntry *e = r->entry[f] + start[0], *end = r->entry[f] + start[1], *half = e + (end - e) / 2;
+  /* Neighbouring stencils overlap, and a sum would wait for the sum before it. So two stencils far apart take turns. */
+  for (const RowEntry *other = half; other < end; other++) {
+    if (e < half) RowAddEntry(r, columns, e++, alpha, F, row);
+    RowAddEntry(r, columns, other, alpha, F, row);
+  }
+}
+
+void StencilRowInterpolate(StencilRows r, Field f, PetscInt j, const PetscScalar row[], PetscScalar U[]) {
+  const PetscInt *start = r->start[f] + j + r->below, columns = r->grid->columns[f];
+  for (const RowEntry *e = r->entry[f] + start[0]; e < r->entry[f] + start[1]; e++) {
+    const Stencil *s = RowStencil(r, e);
+    const PetscScalar *at = row + s->first[0];
+    const PetscReal *weight = s->weight[0];
+    PetscScalar line = 0;
+    if (RowIsWhole(s, columns))
+      line = LanesSum(LanesAt(at) * LanesAt(weight) + LanesAt(at + LANES) * LanesAt(weight + LANES));
+    else
+      for (PetscInt a = 0; a < s->n[0]; a++) {
+        const PetscInt i = RowColumn(r->grid, s, a, columns);
+        if (i >= 0) line += row[i] * weight[a];
+      }
+    U[e->source] += line * e->value;
+  }
 }

@@ -1,48 +1,66 @@
-/* The entries of the markers' stencils, sorted by rows of the grid.
+/* The entries of stencils, sorted by rows of the grid.
 
    A Stokes solve by stream function passes the grid row by row. Forces are spread to a row, and its velocity is
-   interpolated, while it is in the cache. Every rank has the stencils of all markers and the entries of its own rows
-   and of the row above them; nothing crosses ranks here. */
+   interpolated, while it is in the cache. The list is made once, when markers are placed. Every rank has the stencils
+   of all markers and the entries of its own rows and of a few next to it; nothing crosses ranks here. */
 #pragma once
+#include "base/lanes.h"
 #include "fluid/grid/grid.h"
 #include "kernel/kernel.h"
 
-/* The faces of one velocity component that a marker's kernel reaches: columns first[0] .. and rows first[1] .., with
-   their weights. */
+#define STENCIL_POINTS (2 * LANES) /* KERNEL_MAX_POINTS + 1, rounded up to whole vectors */
+
+/* The entries of one field that a marker's kernel reaches: columns first[0] .. and rows first[1] .., with the weights
+
+       weight[0][i] weight[1][j],
+
+   which are zero from entry n on. */
 typedef struct {
-  PetscInt first[2], n[2]; /* in x and y; in a periodic direction `first` is an entry of the grid */
-  PetscReal weight[2][KERNEL_MAX_POINTS];
+  PetscInt first[2], n[2]; /* in x and y; in a periodic direction `first` is an entry of the grid, or one less */
+  PetscReal weight[2][STENCIL_POINTS];
 } Stencil;
+
+/* The stencils that one marker has, and which of its `parts` strengths each of them takes. */
+typedef struct {
+  PetscInt stencils, parts;
+  struct {
+    Field field;
+    PetscInt part;
+  } of[6];
+} StencilForm;
 
 typedef struct {
   PetscInt stencil; /* number of the stencil */
-  PetscInt entry;   /* row of the stencil, from 0 */
+  PetscInt source;  /* number of its strength */
+  PetscReal value;  /* weight of the row */
 } RowEntry;
 
-typedef struct _p_MarkerRows *MarkerRows;
-struct _p_MarkerRows {
+typedef struct _p_StencilRows *StencilRows;
+struct _p_StencilRows {
   Grid grid; /* borrowed */
-  PetscInt stencils;
-  const Stencil *stencil; /* [stencils] borrowed: component c of marker k at 2k + c */
-  PetscInt *start[2];     /* [rows+2] of u and v: first entry of each row of this rank and of the row above them */
-  RowEntry *entry[2];     /* entries row by row, in each row in the order of stencils */
-  PetscInt room[2];       /* capacity of entry */
+  const StencilForm *form;
+  PetscInt below, above;  /* rows below and above this rank's that the list has */
+  PetscInt markers;       /* with form->stencils stencils each */
+  const Stencil *stencil; /* borrowed */
+  PetscInt *start[3];     /* [rows of u + below + above + 2] first entry of each row, in each field */
+  RowEntry *entry[3];     /* entries row by row, in each row in the order of stencils */
+  PetscInt room[3];       /* capacity of entry */
 };
 
-/* MarkerRowsCreate - for a number of stencils. Not collective. */
-PETSC_EXTERN PetscErrorCode MarkerRowsCreate(Grid grid, PetscInt stencils, MarkerRows *rows);
-PETSC_EXTERN PetscErrorCode MarkerRowsDestroy(MarkerRows *rows);
+/* StencilRowsCreate - without stencils; the form must stay. Not collective. */
+PETSC_EXTERN PetscErrorCode StencilRowsCreate(Grid grid, const StencilForm *form, PetscInt below, PetscInt above,
+                                              StencilRows *rows);
+PETSC_EXTERN PetscErrorCode StencilRowsDestroy(StencilRows *rows);
 
-/* MarkerRowsPlace - find the entries of stencil[stencils], which stays the caller's. Weights along x must be zero from
-   entry n on. Not collective. */
-PETSC_EXTERN PetscErrorCode MarkerRowsPlace(MarkerRows rows, const Stencil stencil[]);
+/* StencilRowsPlace - find the entries of the stencils of markers, which stay the caller's. Not collective. */
+PETSC_EXTERN PetscErrorCode StencilRowsPlace(StencilRows rows, PetscInt markers, const Stencil stencil[]);
 
-/* MarkerRowSpread - row += alpha E^T F in row j of u or v, F[stencils]; row j is one of this rank's or the row above
-   them. MarkerRowsSpread - all += alpha E^T F in all of this rank's rows, one behind the other. MarkerRowInterpolate -
-   U[stencils] += E u of row j alone. Not collective. */
-PETSC_EXTERN void MarkerRowSpread(MarkerRows rows, Field field, PetscInt j, PetscReal alpha, const PetscScalar F[],
-                                  PetscScalar row[]);
-PETSC_EXTERN void MarkerRowsSpread(MarkerRows rows, Field field, PetscReal alpha, const PetscScalar F[],
-                                   PetscScalar all[]);
-PETSC_EXTERN void MarkerRowInterpolate(MarkerRows rows, Field field, PetscInt j, const PetscScalar row[],
-                                       PetscScalar U[]);
+/* StencilRowSpread - in local row j of a field, F the strengths of all markers,
+
+       row_i += alpha SUM F weight[0][i] weight[1][j].
+
+   StencilRowInterpolate - U += SUM_i row_i weight[0][i] weight[1][j]. Not collective. */
+PETSC_EXTERN void StencilRowSpread(StencilRows rows, Field field, PetscInt j, PetscReal alpha, const PetscScalar F[],
+                                   PetscScalar row[]);
+PETSC_EXTERN void StencilRowInterpolate(StencilRows rows, Field field, PetscInt j, const PetscScalar row[],
+                                        PetscScalar U[]);

@@ -15,10 +15,8 @@ typedef struct {
 
 static const PetscScalar *ResponseSpreadForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const Response *r = (const Response *)ctx;
-  const Grid g = r->m->grid;
-  const PetscInt row = j == g->rows[f] && g->size == 1 ? 0 : j; /* the row above lies across the periodic seam */
-  (void)PetscArrayzero(work, g->columns[f]);
-  MarkerRowSpread(r->m->rows, f, row, r->alpha, r->m->force, work);
+  (void)PetscArrayzero(work, r->m->grid->columns[f]);
+  StencilRowSpread(r->m->rows, f, j, r->alpha, r->m->force, work);
   if (r->dipoles) DipoleRowsAddForce(r->dipoles, f, j, work);
   return work;
 }
@@ -35,7 +33,7 @@ static const PetscScalar *ResponseGridForce(void *ctx, Field f, PetscInt j, Pets
 static void ResponseVelocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   const Response *r = (const Response *)ctx;
   if (r->dipoles && f == FIELD_U) DipoleRowsAddVelocity(r->dipoles, j, row);
-  if (!r->measured) MarkerRowInterpolate(r->m->rows, f, j, row, r->m->part);
+  if (!r->measured) StencilRowInterpolate(r->m->rows, f, j, row, r->m->part);
 }
 
 /* One solve. window: forces are zero outside it; NULL: they may be anywhere. */

@@ -147,8 +147,8 @@ static void AddEntry(const BoxGrid *b, int ci, int cj, const PetscInt a[2], cons
 static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
   const Grid g = b->fluid->grid;
   PetscReal unit[DIPOLE_COUNT] = {0};
-  DipoleSpot spot[DIPOLE_SPOTS];
-  DipoleList list;
+  Stencil spot[DIPOLE_SPOTS];
+  StencilRows list;
   PetscScalar sum;
   PetscFunctionBeginUser;
   unit[cj] = 1;
@@ -156,9 +156,9 @@ static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
   PetscCall(VecSet(b->force, 0));
   PetscCall(VecSet(b->source, 0));
   PetscCall(DipoleListCreate(g, &list));
-  PetscCall(DipoleListPlace(list, 1, spot));
+  PetscCall(StencilRowsPlace(list, 1, spot));
   PetscCall(DipoleListSpread(list, unit, b->force, b->source));
-  PetscCall(DipoleListDestroy(&list));
+  PetscCall(StencilRowsDestroy(&list));
   PetscCall(VecSum(b->source, &sum));
   PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -32,7 +32,7 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(PetscFree2(s->normal, s->along));
   PetscCall(PetscFree(s->dipole));
   PetscCall(PetscFree(s->spot));
-  if (s->list) PetscCall(DipoleListDestroy(&s->list));
+  PetscCall(StencilRowsDestroy(&s->list));
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
   PetscCall(DoubleImageDestroy(&s->image));
@@ -91,7 +91,7 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
       for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
       DipoleSpotsOf(g, f->set.nu, part, s->spot + DIPOLE_SPOTS * k);
     }
-  PetscCall(DipoleListPlace(s->list, l->M, s->spot));
+  PetscCall(StencilRowsPlace(s->list, l->M, s->spot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

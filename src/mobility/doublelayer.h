@@ -23,8 +23,8 @@ struct _p_DoubleLayer {
   OffsetTable lattice[2];
   DoubleImage image;     /* what the walls add to each pair; NULL in unbounded fluid */
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] unfolded; */
-  DipoleSpot *spot;      /* [DIPOLE_SPOTS M] on the grid, zero where there is no jump; */
-  DipoleList list;       /* these by rows; none of the three in unbounded fluid */
+  Stencil *spot;         /* [DIPOLE_SPOTS M] on the grid, zero where there is no jump; */
+  StencilRows list;      /* these by rows; none of the three in unbounded fluid */
   PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
   PetscReal *along;      /* [M] w (length); of vesicles of ratio 1 these are not made */
   PetscReal *length;     /* [vesicles] sum of w */

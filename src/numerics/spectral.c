@@ -2,10 +2,8 @@
 #include "numerics/circulant.h"
 #include <fftw3.h>
 
-#define CONVOLVED 128        /* markers up to which sums take less time than transforms */
-#define CONVOLVED_ROUGH 1024 /* the limit for numbers with a prime factor above 13, whose transforms are slow */
-#define TURNS 3              /* angles that a step shifts the states before it by */
-#define KEPT 6               /* derivatives that are kept */
+#define TURNS 3 /* angles that a step shifts the states before it by */
+#define KEPT 6  /* derivatives that are kept */
 
 /* A derivative of X[2n]; power 0: none yet. */
 typedef struct {
@@ -16,8 +14,8 @@ typedef struct {
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
-  fftw_plan forward, backward;
-  PetscReal *derivative[3];           /* weights [n] of powers 1, 2, 4, where sums are taken; else NULL */
+  fftw_plan forward;
+  PetscReal *derivative[3];           /* weights [n] of powers 1, 2, 4 */
   Derivative last[KEPT];              /* the last derivatives */
   PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
   PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
@@ -25,51 +23,27 @@ struct _p_Spectral {
   int next, replaced;                 /* numbers of the shift and of the derivative that are replaced next */
 };
 
-static PetscBool SpectralIsConvolved(PetscInt n) {
-  PetscInt rest = n;
-  for (PetscInt prime = 2; prime <= 13; prime++)
-    while (rest % prime == 0) rest /= prime;
-  return n <= (rest > 1 ? CONVOLVED_ROUGH : CONVOLVED) ? PETSC_TRUE : PETSC_FALSE;
-}
+/* Set the weights of the derivatives, which are those of the trigonometric cardinal function,
 
-/* SpectralDerivative by transforms of x + i y, which interlaced arrays are as they stand. */
-static void SpectralTransformed(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
+     SUM_m (2 pi i m/n)^power e^{2 pi i m q/n}/n,   |m| <= n/2,
+
+   without the Nyquist mode of an even n where the power is odd. They are odd for the first derivative and else even. */
+static void SpectralSetWeights(Spectral s) {
   const PetscInt n = s->n;
-  double *line = (double *)s->line, *hat = (double *)s->hat;
-  memcpy(line, X, 2 * (size_t)n * sizeof(double));
-  fftw_execute(s->forward);
-  for (PetscInt q = 0; q < n; q++) {
-    const PetscReal wave = 2 * PETSC_PI * (2 * q > n ? q - n : q) / n, re = hat[2 * q], im = hat[2 * q + 1];
-    if (power == 1) {
-      const PetscReal factor = 2 * q == n ? 0 : scale * wave / n;
-      hat[2 * q] = -factor * im;
-      hat[2 * q + 1] = factor * re;
-    } else {
-      const PetscReal factor = scale * (power == 2 ? -1 : PetscSqr(wave)) * PetscSqr(wave) / n;
-      hat[2 * q] = factor * re;
-      hat[2 * q + 1] = factor * im;
+  for (int p = 0; p < 3; p++)
+    for (PetscInt q = 0; 2 * q <= n; q++) {
+      PetscReal sum = 0;
+      for (PetscInt m = 1; 2 * m <= n; m++) {
+        const PetscReal wave = 2 * PETSC_PI * m / n, angle = 2 * PETSC_PI * (m * q % n) / n;
+        const PetscReal both = 2 * m < n ? 2 : p ? 1 : 0; /* modes m and -m */
+        if (p)
+          sum += both * (p == 1 ? -1 : PetscSqr(wave)) * PetscSqr(wave) * PetscCosReal(angle);
+        else
+          sum -= both * wave * PetscSinReal(angle);
+      }
+      s->derivative[p][(n - q) % n] = (p ? sum : -sum) / n;
+      s->derivative[p][q] = sum / n;
     }
-  }
-  fftw_execute(s->backward);
-  for (PetscInt k = 0; k < 2 * n; k++) Y[k] += line[k];
-}
-
-/* The weights of each derivative: those of a 1 at marker 0. They are odd for the first derivative and else even. */
-static PetscErrorCode SpectralWeights(Spectral s) {
-  const PetscInt n = s->n;
-  PetscReal *one, *found;
-  PetscFunctionBeginUser;
-  for (int p = 0; p < 3; p++) {
-    PetscReal *weight;
-    PetscCall(PetscCalloc2(2 * n, &one, 2 * n, &found));
-    PetscCall(PetscMalloc1(n, &weight));
-    one[0] = 1;
-    SpectralTransformed(s, 1 << p, 1, one, found);
-    for (PetscInt q = 0; q < n; q++) weight[q] = 0.5 * (found[2 * q] + (p ? 1 : -1) * found[2 * ((n - q) % n)]);
-    s->derivative[p] = weight;
-    PetscCall(PetscFree2(one, found));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
@@ -81,8 +55,6 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->hat = fftw_alloc_complex((size_t)n);
   s->line = fftw_alloc_complex((size_t)n);
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
-  s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
-  if (!SpectralIsConvolved(n)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc3(4 * n + CIRCULANT_PADDING, &s->twice, 2 * n + CIRCULANT_PADDING, &s->sum, n + 2, &s->round));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
@@ -94,7 +66,8 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
     PetscCall(PetscMalloc1(n, &s->turn[t]));
     s->phi[t] = NAN;
   }
-  PetscCall(SpectralWeights(s));
+  for (int p = 0; p < 3; p++) PetscCall(PetscMalloc1(n, &s->derivative[p]));
+  SpectralSetWeights(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,7 +76,6 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   fftw_destroy_plan(s->forward);
-  fftw_destroy_plan(s->backward);
   fftw_free(s->hat);
   fftw_free(s->line);
   for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
@@ -136,10 +108,6 @@ static const PetscReal *SpectralFound(Spectral s, int power, const PetscScalar X
 }
 
 void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
-  if (!s->sum) {
-    SpectralTransformed(s, power, scale, X, Y);
-    return;
-  }
   const PetscReal *found = SpectralFound(s, power, X);
   for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * found[k];
 }
@@ -180,23 +148,6 @@ void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscR
     }
 }
 
-static void SpectralShiftTransformed(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
-  const PetscInt n = s->n;
-  double *line = (double *)s->line, *hat = (double *)s->hat;
-  for (PetscInt k = 0; k < n; k++)
-    for (int c = 0; c < 2; c++) line[2 * k + c] = c < each ? X[each * k + c] : 0;
-  fftw_execute(s->forward);
-  for (PetscInt q = 0; q < n; q++) {
-    const PetscReal angle = (PetscReal)(2 * q > n ? q - n : q) * phi, re = hat[2 * q], im = hat[2 * q + 1];
-    const PetscReal a = PetscCosReal(angle) / n, b = 2 * q == n ? 0 : PetscSinReal(angle) / n;
-    hat[2 * q] = a * re - b * im;
-    hat[2 * q + 1] = a * im + b * re;
-  }
-  fftw_execute(s->backward);
-  for (PetscInt k = 0; k < n; k++)
-    for (int c = 0; c < each; c++) Y[each * k + c] = line[2 * k + c];
-}
-
 /* Weights of the shift by phi = d + 2 pi m/n, |d| at most pi/n: the values at d + 2 pi j/n of the trigonometric
    cardinal function,
 
@@ -235,9 +186,7 @@ static inline void SpectralShiftConvolved(Spectral s, const int each, PetscReal 
 }
 
 void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
-  if (!s->sum)
-    SpectralShiftTransformed(s, each, phi, X, Y);
-  else if (each == 1)
+  if (each == 1)
     SpectralShiftConvolved(s, 1, phi, X, Y);
   else
     SpectralShiftConvolved(s, 2, phi, X, Y);

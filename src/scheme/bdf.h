@@ -16,10 +16,6 @@ typedef struct {
 /* BDFExtrapolation - weights star[n] of the polynomial through n states at the end of the step step[0], step[j] being
    the step that led from state j to state j - 1 (time). */
 static inline void BDFExtrapolation(PetscInt n, const PetscReal step[], PetscReal star[]) {
-  const PetscReal r = n > 1 ? step[0] / step[1] : 0;
-  star[0] = 1 + r;
-  if (n > 1) star[1] = -r;
-  if (n < 3) return;
   PetscReal back[BDF_STATES] = {step[0]};
   for (PetscInt j = 1; j < n; j++) back[j] = back[j - 1] + step[j];
   for (PetscInt j = 0; j < n; j++) {
@@ -71,16 +67,10 @@ static inline void BDFGuess(PetscInt n, const PetscReal step[], PetscReal star[]
    order 2 is a0 = 3/(2dt), uhat = (2u - u_old/2)/dt, u* = 2u - u_old. */
 static inline BDF BDFCoefficients(PetscInt order, const PetscReal step[]) {
   BDF b = {.order = order};
+  PetscReal back = 0;
   BDFExtrapolation(order, step, b.star);
-  if (order < 3) {
-    const PetscReal dt = step[0], r = order > 1 ? dt / step[1] : 0;
-    b.a0 = (1 + 2 * r) / ((1 + r) * dt);
-    b.history[0] = (1 + r) / dt;
-    b.history[1] = -r * r / ((1 + r) * dt);
-    return b;
-  }
-  for (int j = 0; j < 3; j++) { /* the derivative at the new time of the polynomial that is 1 at one state */
-    const PetscReal back = step[0] + (j > 0 ? step[1] : 0) + (j > 1 ? step[2] : 0);
+  for (PetscInt j = 0; j < order; j++) { /* the derivative at the new time of the polynomial that is 1 at one state */
+    back += step[j];
     b.a0 += 1 / back;
     b.history[j] = b.star[j] / back;
   }

@@ -78,9 +78,7 @@ static PetscErrorCode AddInterpolation(Direct *d) {
     for (PetscInt b = 0; b < s->n[1]; b++)
       for (PetscInt a = 0; a < s->n[0]; a++) {
         const PetscReal weight = s->weight[1][b] * s->weight[0][a];
-        PetscInt i = s->first[0] + a, j = s->first[1] + b;
-        if (!g->wall[0]) i %= g->n[0];
-        if (!g->wall[1]) j %= g->n[1];
+        const PetscInt i = DirectEntry(g, 0, s->first[0] + a), j = DirectEntry(g, 1, s->first[1] + b);
         if (i < 0 || j < 0 || i >= g->columns[f] || j >= g->rows[f]) continue;
         PetscCall(DirectAdd(d, DirectRow(d, q), DirectIndex(d, f, i, j), -part * weight));
         PetscCall(DirectAdd(d, DirectIndex(d, f, i, j), d->first[PART_F] + q, weight));

@@ -43,6 +43,11 @@ static inline PetscInt DirectIndex(const Direct *d, int field, PetscInt i, Petsc
   return d->first[field] + j * d->grid->columns[field] + i;
 }
 
+/* An entry beside the grid across a periodic seam, on the grid. */
+static inline PetscInt DirectEntry(Grid g, int dir, PetscInt entry) {
+  return g->wall[dir] ? entry : (entry + g->n[dir]) % g->n[dir];
+}
+
 /* The row of the q-th velocity of all bodies: the obstacles' stand beside their F. */
 static inline PetscInt DirectRow(const Direct *d, PetscInt q) {
   const PetscInt n = d->first[PART_F] - d->first[PART_V];

@@ -19,15 +19,19 @@ static PetscErrorCode AddUnitJump(Direct *d, PetscInt k, int c, const PetscReal 
   const PetscInt column = d->first[PART_JUMP] + 2 * k + c, rows = 2 * d->c->bodies->layout->M;
   const PetscReal *X = d->c->markers->X + 2 * k;
   PetscReal T[DIPOLE_COUNT];
-  DipoleSpot spot[DIPOLE_SPOTS];
+  Stencil spot[DIPOLE_SPOTS];
   PetscFunctionBeginUser;
   UnitTensor(s, k, c, T);
   DipoleSpots(g, d->fluid->nu, X, spot);
-  for (const DipoleSpot *p = spot; p < spot + DIPOLE_SPOTS; p++)
-    for (PetscInt b = 0; b < p->line[1].n; b++)
-      for (PetscInt a = 0; a < p->line[0].n; a++)
-        PetscCall(DirectAdd(d, DirectIndex(d, p->field, DipoleEntry(g, p, 0, a), DipoleEntry(g, p, 1, b)), column,
-                            -T[p->part] * p->value * p->line[0].weight[a] * p->line[1].weight[b]));
+  for (int q = 0; q < DIPOLE_SPOTS; q++) {
+    const Stencil *p = &spot[q];
+    for (PetscInt b = 0; b < p->n[1]; b++)
+      for (PetscInt a = 0; a < p->n[0]; a++)
+        PetscCall(DirectAdd(d,
+                            DirectIndex(d, dipole_form.of[q].field, DirectEntry(g, 0, p->first[0] + a),
+                                        DirectEntry(g, 1, p->first[1] + b)),
+                            column, -T[dipole_form.of[q].part] * p->weight[0][a] * p->weight[1][b]));
+  }
   for (PetscInt f = 0; f < DirectMeans(d); f++)
     PetscCall(DirectAdd(d, d->first[PART_MEAN] + f, column, X[f] * s->normal[2 * k + c] / PetscSqr(g->h)));
   for (PetscInt i = 0; D && i < rows; i++)

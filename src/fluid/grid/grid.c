@@ -79,7 +79,6 @@ PetscErrorCode GridCreate(const FluidSpec *spec, Grid *grid) {
   PetscCall(CheckRanks(g));
   g->below = g->rank > 0 ? g->rank - 1 : (g->wall[1] ? MPI_PROC_NULL : g->size - 1);
   g->above = g->rank < g->size - 1 ? g->rank + 1 : (g->wall[1] ? MPI_PROC_NULL : 0);
-  PetscCall(PetscMalloc1(g->n[0], &g->row));
   PetscCall(CreateFields(g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,7 +91,6 @@ PetscErrorCode GridDestroy(Grid *grid) {
     PetscCall(DMDestroy(&g->da[f]));
     for (int side = 0; side < 2; side++) PetscCall(PetscFree(g->ghost[f][side]));
   }
-  PetscCall(PetscFree(g->row));
   PetscCall(DMDestroy(&g->velocity));
   PetscCall(PetscFree(*grid));
   PetscFunctionReturn(PETSC_SUCCESS);

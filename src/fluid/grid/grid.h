@@ -30,7 +30,6 @@ struct _p_Grid {
   DM velocity;
   PetscMPIInt below, above; /* neighbours, MPI_PROC_NULL at a wall */
   PetscScalar *ghost[3][2]; /* row below and row above, per field */
-  PetscScalar *row;         /* [n_x] work */
 };
 
 /* GridCreate - the fluid's grid over the ranks of its communicator. Collective. Errors: a number of ranks that leaves

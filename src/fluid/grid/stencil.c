@@ -30,17 +30,9 @@ PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* out = c G^T w in row j of the cells. */
-static void DivergenceRow(Grid g, PetscReal c, const PetscScalar w[], const Rows *rows, PetscInt j, PetscScalar out[]) {
-  const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
-  const PetscScalar *u = w + j * nu, *down = RowAt(rows, j - 1), *up = RowAt(rows, j);
-  const PetscScalar left = nu == n ? u[n - 1] : 0, right = nu == n ? u[n - 1] : 0;
-  out[0] = c * (left - u[0] + down[0] - up[0]);
-  for (PetscInt i = 1; i < n - 1; i++) out[i] = c * (u[i - 1] - u[i] + down[i] - up[i]);
-  out[n - 1] = c * (u[n - 2] - right + down[n - 1] - up[n - 1]);
-}
-
 PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
+  const PetscReal c = alpha / g->h;
+  const PetscInt n = g->columns[FIELD_P], nu = g->columns[FIELD_U];
   const PetscScalar *wa;
   PetscScalar *qa;
   Rows rows;
@@ -48,47 +40,30 @@ PetscErrorCode GridGradientTranspose(Grid g, PetscReal alpha, Vec w, Vec q) {
   PetscCall(VecGetArrayRead(w, &wa));
   PetscCall(VecGetArray(q, &qa));
   PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
-    DivergenceRow(g, alpha / g->h, wa, &rows, j, qa + j * g->columns[FIELD_P]);
+  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
+    const PetscScalar *u = wa + j * nu, *down = RowAt(&rows, j - 1), *up = RowAt(&rows, j);
+    const PetscScalar seam = nu == n ? u[n - 1] : 0;
+    PetscScalar *out = qa + j * n;
+    out[0] = c * (seam - u[0] + down[0] - up[0]);
+    for (PetscInt i = 1; i < n - 1; i++) out[i] = c * (u[i - 1] - u[i] + down[i] - up[i]);
+    out[n - 1] = c * (u[n - 2] - seam + down[n - 1] - up[n - 1]);
+  }
   PetscCall(VecRestoreArray(q, &qa));
   PetscCall(VecRestoreArrayRead(w, &wa));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode GridLargestDivergence(Grid g, Vec w, Vec bc2, PetscReal *largest) {
-  const PetscInt n = g->columns[FIELD_P];
-  const PetscScalar *wa, *b = NULL;
-  PetscScalar *row = g->row;
-  PetscReal most = 0;
-  PetscMPIInt bad = 0;
-  Rows rows;
+  PetscScalar sum;
+  Vec q;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(w, &wa));
-  if (bc2) PetscCall(VecGetArrayRead(bc2, &b));
-  PetscCall(GridRows(g, FIELD_V, wa + GridLocalU(g), &rows));
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++) {
-    Lanes four = {0}, sums = {0};
-    PetscReal sum = 0;
-    PetscInt i = 0;
-    DivergenceRow(g, 1 / g->h, wa, &rows, j, row);
-    for (PetscInt k = 0; k < n && b; k++) row[k] += b[j * n + k];
-    for (; i + LANES <= n; i += LANES) {
-      const Lanes d = LanesAt(row + i);
-      four = LanesMax(four, LanesMax(d, -d));
-      sums += d;
-    }
-    for (; i < n; i++) {
-      most = PetscMax(most, PetscAbsReal(row[i]));
-      sum += row[i];
-    }
-    for (int k = 0; k < LANES; k++) most = PetscMax(most, four[k]);
-    if (PetscIsInfOrNanReal(sum + LanesSum(sums))) bad = 1;
-  }
-  if (bc2) PetscCall(VecRestoreArrayRead(bc2, &b));
-  PetscCall(VecRestoreArrayRead(w, &wa));
-  if (bad) most = INFINITY; /* a NaN may get lost in MPI_MAX, on some ranks only */
-  PetscCallMPI(MPI_Allreduce(&most, largest, 1, MPIU_REAL, MPI_MAX, g->comm));
-  if (PetscIsInfOrNanReal(*largest)) *largest = NAN;
+  PetscCall(DMGetGlobalVector(g->da[FIELD_P], &q));
+  PetscCall(GridGradientTranspose(g, 1, w, q));
+  if (bc2) PetscCall(VecAXPY(q, 1, bc2));
+  PetscCall(VecNorm(q, NORM_INFINITY, largest));
+  PetscCall(VecSum(q, &sum));
+  if (PetscIsInfOrNanReal(sum)) *largest = NAN; /* a NaN may get lost in a maximum */
+  PetscCall(DMRestoreGlobalVector(g->da[FIELD_P], &q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -97,15 +97,15 @@ static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diamete
 /* The rows of two dipoles at these heights, into `rows`. */
 static PetscErrorCode SetRows(Grid g, const PetscReal height[2], PetscBool own, DipoleRows rows) {
   const PetscReal T[2 * DIPOLE_COUNT] = {0.7, -0.4, 0.3, -0.2, 0.9, 0.5}, none[2] = {0, 0};
-  DipoleSpot spot[2 * DIPOLE_SPOTS];
-  DipoleList list;
+  Stencil spot[2 * DIPOLE_SPOTS];
+  StencilRows list;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(spot, 2 * DIPOLE_SPOTS));
   PetscCall(DipoleListCreate(g, &list));
   for (int k = 0; k < 2; k++) DipoleSpots(g, 1, (PetscReal[]){6.3 + 2 * k, height[k]}, spot + k * DIPOLE_SPOTS);
-  PetscCall(DipoleListPlace(list, 2, spot));
+  PetscCall(StencilRowsPlace(list, 2, spot));
   PetscCall(DipoleRowsSet(rows, list, T, own, NULL, none));
-  PetscCall(DipoleListDestroy(&list));
+  PetscCall(StencilRowsDestroy(&list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

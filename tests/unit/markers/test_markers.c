@@ -123,12 +123,13 @@ static PetscErrorCode CheckTranspose(const char name[], TestWorld *t, unsigned s
 
 /* How often row j of this rank, or the one above them, has an entry of stencil k, and whether it is the right one. */
 static int Listed(Markers m, PetscInt k, PetscInt j) {
-  const MarkerRows r = m->rows;
+  const StencilRows r = m->rows;
   const Stencil *s = &m->stencil[k];
   int times = 0;
   for (PetscInt e = r->start[k % 2][j]; e < r->start[k % 2][j + 1]; e++) {
     const RowEntry at = r->entry[k % 2][e];
-    if (at.stencil == k) times += (s->first[1] + at.entry - m->grid->first - j) % m->grid->n[1] == 0 ? 1 : 2;
+    const PetscInt n = m->grid->n[1], b = (m->grid->first + j - s->first[1] + n) % n;
+    if (at.stencil == k) times += b < s->n[1] && at.value == s->weight[1][b] && at.source == k ? 1 : 2;
   }
   return times;
 }
