@@ -10,58 +10,6 @@ typedef struct {
   PetscInt next;
 } ContactLink;
 
-#define MOST_CURVES 32 /* in most scenes with more curves their boxes overlap */
-
-typedef struct {
-  PetscReal low[2], high[2];
-} Box;
-
-static Box BoxAround(PetscInt n, const PetscReal X[]) {
-  Box b = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {-PETSC_MAX_REAL, -PETSC_MAX_REAL}};
-  for (PetscInt k = 0; k < 2 * n; k++) {
-    b.low[k % 2] = PetscMin(b.low[k % 2], X[k]);
-    b.high[k % 2] = PetscMax(b.high[k % 2], X[k]);
-  }
-  return b;
-}
-
-/* TRUE if, in each periodic direction, a closed curve has more than `reach` between its box and the images of the box,
-   or is shorter than half a period, so that every image of a point is more than half a period away from the curve. */
-static PetscBool BoxIsAlone(const Box *b, const PetscReal period[2], PetscReal reach) {
-  for (int d = 0; d < 2; d++) {
-    const PetscReal extent = b->high[d] - b->low[d];
-    if (period[d] > 0 && extent + reach >= period[d] && 2 * extent >= period[d]) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
-/* TRUE if the nearest images of two boxes are farther apart than reach. */
-static PetscBool BoxesApart(const Box *a, const Box *b, const PetscReal period[2], PetscReal reach) {
-  for (int d = 0; d < 2; d++) {
-    PetscReal middle = 0.5 * (b->low[d] + b->high[d] - a->low[d] - a->high[d]);
-    if (period[d] > 0) middle -= period[d] * PetscFloorReal(middle / period[d] + 0.5);
-    if (PetscAbsReal(middle) - 0.5 * (a->high[d] - a->low[d] + b->high[d] - b->low[d]) > reach) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* TRUE if the bounding boxes show that each curve that moves is farther than reach from all other curves and from its
-   own images. FALSE does not say that a curve is near. */
-static PetscBool AreApart(const CurveSet *set, PetscReal reach) {
-  Box box[MOST_CURVES];
-  if (set->curves > MOST_CURVES) return PETSC_FALSE;
-  for (PetscInt v = 0; v < set->curves; v++) {
-    if (CurveSetKind(set, v).type == CURVE_SPANNING) return PETSC_FALSE;
-    box[v] = BoxAround(set->start[v + 1] - set->start[v], set->X + 2 * set->start[v]);
-  }
-  for (PetscInt v = 0; v < set->moving; v++) {
-    if (!BoxIsAlone(&box[v], set->period, reach)) return PETSC_FALSE;
-    for (PetscInt w = v + 1; w < set->curves; w++)
-      if (!BoxesApart(&box[v], &box[w], set->period, reach)) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
 typedef struct {
   const CurveSet *set;
   PetscReal reach;
@@ -164,7 +112,6 @@ PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, 
   PetscFunctionBeginUser;
   *n = 0;
   *contacts = NULL;
-  if (AreApart(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int d = 0; d < 2; d++)
     if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
   PetscCall(PetscMalloc2(points, &s.curve, points, &s.head));
@@ -240,13 +187,13 @@ PetscErrorCode CurveGaps(const CurveSet *set, PetscReal reach, PetscInt *n, Curv
 }
 
 PetscErrorCode CurveLeastGap(const CurveSet *set, PetscReal *distance) {
-  const PetscReal edge = CurveLongestEdge(set), *X = set->X, *period = set->period;
-  const Box all = BoxAround(set->start[set->curves], X);
-  PetscReal most = 0;
+  const PetscReal edge = CurveLongestEdge(set), *period = set->period;
+  PetscReal most = 0, around[4] = CURVE_NOWHERE;
   PetscFunctionBeginUser;
   *distance = NAN;
+  CurveBounds(set->start[set->curves], set->X, around);
   for (int d = 0; d < 2; d++)
-    most += period[d] > 0 ? period[d] : all.high[d] - all.low[d]; /* no two points are farther apart */
+    most += period[d] > 0 ? period[d] : around[2 * d + 1] - around[2 * d]; /* no two points are farther apart */
   if (set->curves < 2 && period[0] <= 0 && period[1] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscReal reach = 2 * edge; PetscIsNanReal(*distance); reach *= 4) {
     CurveGap *gaps, *least = NULL;

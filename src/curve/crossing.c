@@ -1,5 +1,6 @@
 #include "curve/crossing.h"
 
+#define ALIKE 1e-10 /* over the longest edge: edges whose middles are so near to one another cross, or are one edge */
 #define CROSSING_FINER 8 /* times as many points where polygons of smooth curves cross */
 
 /* Points sorted into cells at least `reach` wide. The points of cell c are point[first[c]] .. point[first[c + 1] - 1],
@@ -23,13 +24,11 @@ static PetscInt CellListCell(const CellList *c, const PetscReal x[2]) {
 
 static PetscErrorCode CellListCreate(PetscInt n, const PetscReal X[], PetscReal reach, CellList *c) {
   PetscInt *cell;
+  PetscReal around[4] = CURVE_NOWHERE;
   PetscFunctionBeginUser;
+  CurveBounds(n, X, around);
   for (int dir = 0; dir < 2; dir++) {
-    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
-    for (PetscInt k = 0; k < n; k++) {
-      low = PetscMin(low, X[2 * k + dir]);
-      high = PetscMax(high, X[2 * k + dir]);
-    }
+    const PetscReal low = around[2 * dir], high = around[2 * dir + 1];
     const PetscReal extent = c->period[dir] > 0 ? c->period[dir] : PetscMax(high - low, reach);
     const PetscReal most = PetscCeilReal(PetscSqrtReal(4. * n)); /* a few cells a point in all */
     c->cells[dir] = (PetscInt)PetscMax(1, PetscMin(most, PetscFloorReal(extent / reach)));
@@ -155,7 +154,9 @@ static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscRe
     p[dir] = X[2 * j + dir] + shift;
     q[dir] = s->end[2 * j + dir] + shift;
   }
-  if (TriangleArea(a, b, p) * TriangleArea(a, b, q) >= 0 || TriangleArea(p, q, a) * TriangleArea(p, q, b) >= 0)
+  const PetscBool alike = PetscHypotReal(d[0], d[1]) <= ALIKE * s->longest ? PETSC_TRUE : PETSC_FALSE;
+  if (!alike &&
+      (TriangleArea(a, b, p) * TriangleArea(a, b, q) >= 0 || TriangleArea(p, q, a) * TriangleArea(p, q, b) >= 0))
     return PETSC_FALSE;
   s->error = CurvesCrossTruly(s, pair, &cross);
   return s->error || cross ? PETSC_TRUE : PETSC_FALSE;

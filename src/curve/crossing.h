@@ -21,6 +21,6 @@ PETSC_EXTERN PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const P
                                         const PetscReal period[2], PetscReal reach, PairFound found, void *context);
 
 /* CurvesCross - two curves of a set, moving or not, with edges that cross; the same curve twice: it crosses itself; -1,
-   -1: no curves cross. Polygons that touch do not cross. Where the polygons of smooth curves cross they are compared at
-   eight times as many points. Not collective. Errors: memory. */
+   -1: no curves cross. Polygons that touch do not cross, equal ones do. Where the polygons of smooth curves cross they
+   are compared at eight times as many points. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CurvesCross(const CurveSet *set, PetscInt pair[2]);

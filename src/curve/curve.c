@@ -1,5 +1,6 @@
 /* Curves: ellipses and cubic splines, and equal chords along them. */
 #include "curve/curve.h"
+#include <petscblaslapack.h>
 
 #define CURVE_SAMPLES 4000 /* parts of a curve that integrals along it are summed over */
 
@@ -79,49 +80,6 @@ PetscReal CurveArea(const Curve *c) {
   return c->n ? CurveIntegral(c, PETSC_TRUE, 0, 1) : PETSC_PI * c->axes[0] * c->axes[1];
 }
 
-/* s[M + 1]: lengths of chords from t[0] up to t[k], with the points X[2M + 2]. */
-static void CurveChords(const Curve *c, PetscInt M, const PetscReal t[], PetscReal s[], PetscReal X[]) {
-  s[0] = 0;
-  for (PetscInt k = 0; k <= M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
-  for (PetscInt k = 1; k <= M; k++)
-    s[k] = s[k - 1] + PetscSqrtReal(PetscSqr(X[2 * k] - X[2 * k - 2]) + PetscSqr(X[2 * k + 1] - X[2 * k - 1]));
-}
-
-/* out[M + 1]: parameters at which the piecewise linear function s(t) takes equal steps. */
-static void CurveEqualSteps(PetscInt n, const PetscReal t[], const PetscReal s[], PetscInt M, PetscReal out[]) {
-  PetscInt i = 0;
-  for (PetscInt k = 0; k < M; k++) {
-    const PetscReal want = s[n] * k / M;
-    while (i < n - 1 && s[i + 1] < want) i++;
-    out[k] = t[i] + (t[i + 1] - t[i]) * (want - s[i]) / (s[i + 1] - s[i]);
-  }
-  out[M] = 1;
-}
-
-PetscErrorCode CurveEqualChords(const Curve *c, PetscInt M, PetscReal X[]) {
-  PetscReal *t, *s, *next, *points;
-  const PetscInt n = PetscMax(CURVE_SAMPLES, 20 * M);
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n + 1, &t, n + 1, &s, M + 1, &next, 2 * n + 2, &points));
-  for (PetscInt i = 0; i <= n; i++) t[i] = (PetscReal)i / n;
-  CurveChords(c, n, t, s, points);
-  CurveEqualSteps(n, t, s, M, next);
-  PetscCall(PetscArraycpy(t, next, M + 1));
-  for (int it = 0; it < 500; it++) {
-    PetscReal change = 0;
-    CurveChords(c, M, t, s, points);
-    CurveEqualSteps(M, t, s, M, next);
-    for (PetscInt k = 0; k <= M; k++) {
-      change = PetscMax(change, PetscAbsReal(next[k] - t[k]));
-      t[k] = next[k];
-    }
-    if (change < 1e-15) break;
-  }
-  for (PetscInt k = 0; k < M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
-  PetscCall(PetscFree4(t, s, next, points));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Arc lengths of n equal parts of the parameter between two: s[n + 1] up to the end of each part, middle[n] up to its
    middle. By Richardson extrapolation of chords and half chords, relative error h^4. */
 static void CurveArcs(const Curve *c, const PetscReal between[2], PetscInt n, PetscReal s[], PetscReal middle[]) {
@@ -140,7 +98,8 @@ static void CurveArcs(const Curve *c, const PetscReal between[2], PetscInt n, Pe
   }
 }
 
-PetscErrorCode CurveEqualArcs(const Curve *c, const PetscReal part[2], PetscInt M, PetscReal X[]) {
+/* t[M]: parameters of M points between which all arcs are equal (CurveEqualEdges). */
+static PetscErrorCode CurveArcSteps(const Curve *c, const PetscReal part[2], PetscInt M, PetscReal t[]) {
   const PetscReal all[2] = {0, 1}, *between = part ? part : all;
   const PetscInt arcs = part ? M - 1 : M, n = PetscMax(CURVE_SAMPLES, 20 * M);
   PetscReal *s, *middle;
@@ -154,9 +113,47 @@ PetscErrorCode CurveEqualArcs(const Curve *c, const PetscReal part[2], PetscInt 
     /* t(s) is the parabola through both ends and the middle of the part */
     const PetscReal x = (want - s[i]) / (s[i + 1] - s[i]), m = (middle[i] - s[i]) / (s[i + 1] - s[i]);
     const PetscReal bend = (0.5 - m) / (m * (m - 1));
-    CurveEvaluate(c, between[0] + (between[1] - between[0]) * ((i + x + bend * x * (x - 1)) / n), &X[2 * k]);
+    t[k] = between[0] + (between[1] - between[0]) * ((i + x + bend * x * (x - 1)) / n);
   }
   PetscCall(PetscFree2(s, middle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Move the parameters t[M + 1] of M chords from t[0] = 0 to t[M] = 1 until all chords are equal. */
+static PetscErrorCode CurveChordSteps(const Curve *c, PetscInt M, PetscReal t[]) {
+  PetscReal *s, *next, change = 1;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(M + 1, &s, M, &next));
+  for (int it = 0; it < 500 && change >= 1e-15; it++) {
+    PetscReal a[2], b[2];
+    CurveEvaluate(c, 0, a);
+    for (PetscInt k = 1; k <= M; k++) { /* s: lengths of chords up to t */
+      CurveEvaluate(c, t[k], b);
+      s[k] = s[k - 1] + PetscHypotReal(b[0] - a[0], b[1] - a[1]);
+      PetscCall(PetscArraycpy(a, b, 2));
+    }
+    change = 0;
+    for (PetscInt k = 1, i = 0; k < M; k++) { /* equal steps of the piecewise linear function s(t) */
+      const PetscReal want = s[M] * k / M;
+      while (i < M - 1 && s[i + 1] < want) i++;
+      next[k] = t[i] + (t[i + 1] - t[i]) * (want - s[i]) / (s[i + 1] - s[i]);
+      change = PetscMax(change, PetscAbsReal(next[k] - t[k]));
+    }
+    PetscCall(PetscArraycpy(t + 1, next + 1, M - 1));
+  }
+  PetscCall(PetscFree2(s, next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CurveEqualEdges(const Curve *c, const PetscReal part[2], PetscBool chords, PetscInt M, PetscReal X[]) {
+  PetscReal *t;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(M + 1, &t));
+  PetscCall(CurveArcSteps(c, part, M, t));
+  t[M] = 1;
+  if (chords) PetscCall(CurveChordSteps(c, M, t));
+  for (PetscInt k = 0; k < M; k++) CurveEvaluate(c, t[k], &X[2 * k]);
+  PetscCall(PetscFree(t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,48 +178,41 @@ PetscErrorCode EllipseAxes(PetscReal area, PetscReal reduced_area, PetscReal axe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Second derivatives of the cubic spline by two passes of the cyclic Thomas algorithm (Sherman-Morrison). In an open
-   curve the first and the last point are one unknown, and the second derivative there is zero. */
+/* Second derivatives m_i of the cubic spline at its knots, with the parts h_i = t_{i+1} - t_i and the slopes s_i of the
+   chords:
+
+     h_{i-1}/6 m_{i-1} + (h_{i-1} + h_i)/3 m_i + h_i/6 m_{i+1} = s_i - s_{i-1},   i modulo n.
+
+   The equations 1 .. n - 1 are solved for both coordinates with m_0 = 0, and for what m_0 = 1 adds; equation 0 gives
+   m_0, which is zero where the curve is open. */
 static PetscErrorCode CurveSplineSetUp(Curve *c) {
-  const PetscInt n = c->n;
-  PetscReal *diag, *low, *up, *rhs, *z;
+  const PetscBLASInt n = (PetscBLASInt)c->n, unknowns = n - 1, columns = 3;
+  PetscReal *diag, *off, *y[3];
+  PetscBLASInt info;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc5(n, &diag, n, &low, n, &up, n, &rhs, n, &z));
-  for (int k = 0; k < 2; k++) {
-    PetscReal corner_low, corner_up, gamma;
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscInt p = (i + n - 1) % n;
-      const PetscReal dm = c->t[p + 1] - c->t[p], dp = c->t[i + 1] - c->t[i];
-      low[i] = dm / 6;
-      diag[i] = (dm + dp) / 3;
-      up[i] = dp / 6;
-      rhs[i] = (c->x[k][i + 1] - c->x[k][i]) / dp - (c->x[k][p + 1] - c->x[k][p]) / dm;
-    }
-    if (c->kind.type == CURVE_OPEN) {
-      low[0] = up[0] = rhs[0] = 0;
-      diag[0] = 1;
-    }
-    corner_low = low[0];
-    corner_up = up[n - 1];
-    gamma = -diag[0];
-    diag[0] -= gamma;
-    diag[n - 1] -= corner_low * corner_up / gamma;
-    for (PetscInt i = 0; i < n; i++) z[i] = i == 0 ? gamma : (i == n - 1 ? corner_up : 0);
-    for (PetscInt i = 1; i < n; i++) {
-      const PetscReal f = low[i] / diag[i - 1];
-      diag[i] -= f * up[i - 1];
-      rhs[i] -= f * rhs[i - 1];
-      z[i] -= f * z[i - 1];
-    }
-    for (PetscInt i = n - 1; i >= 0; i--) {
-      rhs[i] = (rhs[i] - (i < n - 1 ? up[i] * rhs[i + 1] : 0)) / diag[i];
-      z[i] = (z[i] - (i < n - 1 ? up[i] * z[i + 1] : 0)) / diag[i];
-    }
-    const PetscReal f = (rhs[0] + corner_low * rhs[n - 1] / gamma) / (1 + z[0] + corner_low * z[n - 1] / gamma);
-    for (PetscInt i = 0; i < n; i++) c->m[k][i] = rhs[i] - f * z[i];
-    c->m[k][n] = c->m[k][0];
+  PetscCall(PetscMalloc2(n, &diag, n, &off));
+  PetscCall(PetscCalloc1(3 * n, &y[0]));
+  for (int k = 1; k < 3; k++) y[k] = y[0] + k * n;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt p = (i + n - 1) % n;
+    const PetscReal before = c->t[p + 1] - c->t[p], after = c->t[i + 1] - c->t[i];
+    diag[i] = (before + after) / 3;
+    off[i] = after / 6;
+    for (int k = 0; k < 2; k++)
+      y[k][i] = (c->x[k][i + 1] - c->x[k][i]) / after - (c->x[k][p + 1] - c->x[k][p]) / before;
   }
-  PetscCall(PetscFree5(diag, low, up, rhs, z));
+  y[2][1] = -off[0];
+  y[2][n - 1] = -off[n - 1];
+  PetscCallBLAS("LAPACKpttrf", LAPACKpttrf_(&unknowns, diag + 1, off + 1, &info));
+  PetscCallBLAS("LAPACKpttrs", LAPACKpttrs_(&unknowns, &columns, diag + 1, off + 1, y[0] + 1, &n, &info));
+  const PetscReal corner = diag[0] + off[0] * y[2][1] + off[n - 1] * y[2][n - 1];
+  for (int k = 0; k < 2; k++) {
+    const PetscReal first = (y[k][0] - off[0] * y[k][1] - off[n - 1] * y[k][n - 1]) / corner;
+    c->m[k][0] = c->m[k][n] = c->kind.type == CURVE_OPEN ? 0 : first;
+    for (PetscInt i = 1; i < n; i++) c->m[k][i] = y[k][i] + c->m[k][0] * y[2][i];
+  }
+  PetscCall(PetscFree2(diag, off));
+  PetscCall(PetscFree(y[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

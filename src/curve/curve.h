@@ -27,12 +27,9 @@ PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 /* ShapeRadius - R0 of vesicle v: its length over 2 pi. Not collective. */
 PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 
-/* ShapeMiddle - the mean of the markers of curve v. ShapeBounds - the rectangle x_min, x_max, y_min, y_max around the
-   markers of curve v. ShapeHolds - whether the point X, or one of its images, lies within the polygon of curve v, which
-   is no longer than a period (0: none). Not collective.
- */
+/* ShapeMiddle - the mean of the markers of curve v. ShapeHolds - whether the point X, or one of its images,
+   lies within the polygon of curve v, which is no longer than a period (0: none). Not collective. */
 PETSC_EXTERN void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]);
-PETSC_EXTERN void ShapeBounds(const Shape *shape, PetscInt v, PetscReal box[4]);
 PETSC_EXTERN PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal X[2], const PetscReal period[2]);
 
 /* A curve X(t):
@@ -58,13 +55,12 @@ PETSC_EXTERN PetscReal CurvePartLength(const Curve *curve, PetscReal from, Petsc
 PETSC_EXTERN PetscReal CurveArea(const Curve *curve);
 PETSC_EXTERN void CurveCentroid(const Curve *curve, PetscReal centroid[2]);
 
-/* CurveEqualChords - M points X[2M] on the curve between which all M chords are equal, the first at t = 0.
-   CurveEqualArcs - M points between which all arcs are equal, on a smooth curve to 1e-9 of their length: CurveFit
-   starts from these points for the edges of the spectral derivative. part NULL: M arcs around the curve, the first
-   point at t = 0; else M - 1 arcs, the first point at t = part[0] and the last at t = part[1]. Not collective. Errors:
-   memory. */
-PETSC_EXTERN PetscErrorCode CurveEqualChords(const Curve *curve, PetscInt M, PetscReal X[]);
-PETSC_EXTERN PetscErrorCode CurveEqualArcs(const Curve *curve, const PetscReal part[2], PetscInt M, PetscReal X[]);
+/* CurveEqualEdges - M points X[2M] on the curve between which all arcs are equal, on a smooth curve to 1e-9 of their
+   length: CurveFit starts from these points for the edges of the spectral derivative. part NULL: M arcs around the
+   curve, the first point at t = 0; else M - 1 arcs, the first point at t = part[0] and the last at t = part[1]. chords:
+   all chords around the curve are equal, not the arcs; part is NULL. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveEqualEdges(const Curve *curve, const PetscReal part[2], PetscBool chords, PetscInt M,
+                                            PetscReal X[]);
 
 /* CurveFit - move M markers X[2M] as little as possible (least squares) until all edges are length/M long and the curve
    encloses the area, by at most `most` steps of Newton's method. spectral: edges are dX/dk and the curve is that of the

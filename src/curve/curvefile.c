@@ -89,44 +89,47 @@ static PetscErrorCode PointsReadNote(const char line[], PetscInt number, Points 
 /* Read line `number` of the file. */
 static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *points) {
   const char *start = line + strspn(line, " \t");
-  const PetscBool comment = *start == '#' ? PETSC_TRUE : PETSC_FALSE;
   PetscReal x[2];
   PetscFunctionBeginUser;
   line[strcspn(line, "\r\n")] = 0;
-  if (comment) {
-    if (points->period) PetscCall(PointsReadNote(start, number, points));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  if (*start == '#' && points->period) PetscCall(PointsReadNote(start, number, points));
+  if (*start == '#') PetscFunctionReturn(PETSC_SUCCESS);
   line[strcspn(line, "#")] = 0;
   const int n = PointsNumbers(line, 2, x);
-  if (n == 0) PetscCall(PointsEndCurve(points));
-  if (n == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (n != 2) {
+  if (n == 0)
+    PetscCall(PointsEndCurve(points));
+  else if (n != 2)
     PointsRefuseLine(points, number, line, "two finite numbers, x y");
-    PetscFunctionReturn(PETSC_SUCCESS);
+  else {
+    PetscCall(ArrayReserve((size_t)(2 * (points->n + 1)), &points->xy_capacity, &points->xy));
+    PetscCall(PetscArraycpy(points->xy + 2 * points->n++, x, 2));
   }
-  PetscCall(ArrayReserve((size_t)(2 * (points->n + 1)), &points->xy_capacity, &points->xy));
-  PetscCall(PetscArraycpy(points->xy + 2 * points->n++, x, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Read the lines on one rank. The message of a mistake goes into points->error. */
-static PetscErrorCode PointsRead(Points *points) {
-  FILE *f = FileOpen(points->file);
-  char *line = NULL;
+/* Read the lines of the file, whose text rank 0 sends up to its end or a zero. The message of a mistake goes into
+   p->error. */
+static PetscErrorCode PointsRead(MPI_Comm comm, Points *p) {
+  char *text = NULL, *rest;
   size_t room = 0;
-  PetscInt number = 0;
+  PetscInt length = 0;
+  PetscMPIInt rank;
   PetscFunctionBeginUser;
-  if (!f) {
-    PointsRefuse(points, "cannot be opened (%s); allowed: a readable text file", strerror(errno));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  while (getline(&line, &room, f) >= 0 && !*points->error) PetscCall(PointsReadLine(line, ++number, points));
-  if (ferror(f)) PointsRefuse(points, "cannot be read; allowed: a readable text file");
-  free(line);
-  fclose(f);
-  PetscCall(PointsEndCurve(points));
-  if (!points->curves && !*points->error) PointsRefuse(points, "0 points; allowed: at least 8 a curve");
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  FILE *f = rank ? NULL : FileOpen(p->file);
+  if (!rank && !f) PointsRefuse(p, "cannot be opened (%s); allowed: a readable text file", strerror(errno));
+  if (f && getdelim(&text, &room, 0, f) > 0) length = (PetscInt)strlen(text) + 1;
+  if (f && ferror(f)) PointsRefuse(p, "cannot be read; allowed: a readable text file");
+  if (f) fclose(f);
+  PetscCallMPI(MPI_Bcast(p->error, sizeof(p->error), MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, comm));
+  if (rank) text = (char *)malloc((size_t)length);
+  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)length, MPI_CHAR, 0, comm));
+  rest = length ? text : NULL;
+  for (PetscInt number = 1; rest && !*p->error; number++) PetscCall(PointsReadLine(strsep(&rest, "\n"), number, p));
+  free(text);
+  PetscCall(PointsEndCurve(p));
+  if (!p->curves && !*p->error) PointsRefuse(p, "0 points; allowed: at least 8 a curve");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,24 +190,6 @@ static void PointsClean(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note,
   if (area < 0) PointsReverse(kind, *n, xy);
 }
 
-/* Send what rank 0 has read to all ranks. */
-static PetscErrorCode PointsShare(MPI_Comm comm, PetscMPIInt rank, Points *p) {
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(p->error, sizeof(p->error), MPI_CHAR, 0, comm));
-  PetscCallMPI(MPI_Bcast(&p->n, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(&p->curves, 1, MPIU_INT, 0, comm));
-  PetscCheck(!*p->error, comm, PETSC_ERR_USER_INPUT, "%s", p->error);
-  if (rank) {
-    PetscCall(PetscMalloc1(p->curves, &p->end));
-    PetscCall(PetscMalloc1(p->curves, &p->note));
-    PetscCall(PetscMalloc1(2 * p->n, &p->xy));
-  }
-  PetscCallMPI(MPI_Bcast(p->end, (PetscMPIInt)p->curves, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(p->note, (PetscMPIInt)((size_t)p->curves * sizeof(CurveNote)), MPI_BYTE, 0, comm));
-  PetscCallMPI(MPI_Bcast(p->xy, (PetscMPIInt)(2 * p->n), MPIU_REAL, 0, comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The hash FNV-1a of what came before, h, and of n numbers. */
 static uint64_t PointsDigest(uint64_t h, PetscInt n, const PetscReal x[]) {
   const unsigned char *bytes = (const unsigned char *)x;
@@ -216,11 +201,9 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
                               PetscInt *curves, Curve **curve, CurveNote **note) {
   Points p = {.option = option, .file = file, .period = period};
   uint64_t digest = 0xcbf29ce484222325u;
-  PetscMPIInt rank;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(PointsRead(&p));
-  PetscCall(PointsShare(comm, rank, &p));
+  PetscCall(PointsRead(comm, &p));
+  PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
   *curves = p.curves;
   PetscCall(PetscCalloc1(p.curves, curve));
   for (PetscInt k = 0; k < p.curves; k++) {

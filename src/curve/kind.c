@@ -92,6 +92,14 @@ PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt ste
   return PETSC_TRUE;
 }
 
+void CurveBounds(PetscInt n, const PetscReal X[], PetscReal around[4]) {
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    PetscReal *side = around + 2 * (k % 2);
+    side[0] = PetscMin(side[0], X[k]);
+    side[1] = PetscMax(side[1], X[k]);
+  }
+}
+
 PetscReal CurveLongestEdge(const CurveSet *set) {
   PetscReal longest = 0, to[2];
   for (PetscInt v = 0; v < set->curves; v++) {

@@ -40,6 +40,12 @@ static inline CurveKind CurveSetKind(const CurveSet *set, PetscInt v) {
 }
 PETSC_EXTERN PetscBool CurveSetWalk(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal X[2]);
 
+/* CurveBounds - make the rectangle around[4] (x_min, x_max, y_min, y_max; CURVE_NOWHERE is empty) hold n points X[2n].
+   Not collective. */
+#define CURVE_NOWHERE                                                                                                  \
+  { PETSC_MAX_REAL, -PETSC_MAX_REAL, PETSC_MAX_REAL, -PETSC_MAX_REAL }
+PETSC_EXTERN void CurveBounds(PetscInt n, const PetscReal X[], PetscReal around[4]);
+
 /* CurveLongestEdge - length of the longest edge of all curves of a set. Not collective. */
 PETSC_EXTERN PetscReal CurveLongestEdge(const CurveSet *set);
 

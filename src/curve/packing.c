@@ -17,9 +17,8 @@ typedef struct {
   PetscReal *axes;  /* [2n] semi-axes, longer by half a gap */
   PetscReal *scale; /* [n] sizes over the full ones */
   PetscReal length[2], longest, step;
-  PetscInt cells[2]; /* cells at least twice `longest` wide that hold the centres */
-  PetscInt *first, *next, *before,
-      *cell; /* first centre of a cell; next and previous in the cell of a centre; its cell */
+  PetscInt cells[2];             /* cells at least twice `longest` wide that hold the centres */
+  PetscInt *first, *next, *cell; /* first centre of a cell, or -1; next in the cell of a centre; its cell */
   uint64_t random;
 } Packing;
 
@@ -142,16 +141,12 @@ static void PackingPut(Packing *p, PetscInt i, const Pose *at, PetscReal scale) 
   p->scale[i] = scale;
   if (p->cell[i] == cell) return;
   if (p->cell[i] >= 0) {
-    if (p->before[i] >= 0)
-      p->next[p->before[i]] = p->next[i];
-    else
-      p->first[p->cell[i]] = p->next[i];
-    if (p->next[i] >= 0) p->before[p->next[i]] = p->before[i];
+    PetscInt *to = &p->first[p->cell[i]];
+    while (*to != i) to = &p->next[*to];
+    *to = p->next[i];
   }
   p->cell[i] = cell;
-  p->before[i] = -1;
   p->next[i] = p->first[cell];
-  if (p->next[i] >= 0) p->before[p->next[i]] = i;
   p->first[cell] = i;
 }
 
@@ -170,7 +165,7 @@ static PetscErrorCode PackingBegin(Packing *p, const PackingSpec *spec, PetscInt
   p->pose = pose;
   p->longest = 0;
   p->random = (uint64_t)spec->seed;
-  PetscCall(PetscMalloc5(2 * n, &p->axes, n, &p->scale, n, &p->next, n, &p->before, n, &p->cell));
+  PetscCall(PetscMalloc4(2 * n, &p->axes, n, &p->scale, n, &p->next, n, &p->cell));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal a = axes[2 * i], b = axes[2 * i + 1], more = spec->gap / 2 * (a + b) / (2 * PetscSqrtReal(a * b));
     p->axes[2 * i] = a + more;
@@ -190,7 +185,7 @@ static PetscErrorCode PackingBegin(Packing *p, const PackingSpec *spec, PetscInt
 
 static PetscErrorCode PackingEnd(Packing *p) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(p->axes, p->scale, p->next, p->before, p->cell));
+  PetscCall(PetscFree4(p->axes, p->scale, p->next, p->cell));
   PetscCall(PetscFree(p->first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,24 +38,13 @@ void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]) {
   for (PetscInt k = 0; k < 2 * n; k++) X[k % 2] += shape->X[2 * first + k] / (PetscReal)n;
 }
 
-void ShapeBounds(const Shape *shape, PetscInt v, PetscReal box[4]) {
-  for (int d = 0; d < 2; d++) {
-    box[2 * d] = PETSC_MAX_REAL;
-    box[2 * d + 1] = -PETSC_MAX_REAL;
-    for (PetscInt k = shape->start[v]; k < shape->start[v + 1]; k++) {
-      box[2 * d] = PetscMin(box[2 * d], shape->X[2 * k + d]);
-      box[2 * d + 1] = PetscMax(box[2 * d + 1], shape->X[2 * k + d]);
-    }
-  }
-}
-
 /* By the number of edges that a ray crosses from the image of the point that is nearest to the curve's middle. */
 PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal point[2], const PetscReal period[2]) {
   const PetscInt M = shape->start[v + 1] - shape->start[v];
   const PetscReal *X = shape->X + 2 * shape->start[v];
-  PetscReal box[4], at[2];
+  PetscReal box[4] = CURVE_NOWHERE, at[2];
   PetscBool inside = PETSC_FALSE;
-  ShapeBounds(shape, v, box);
+  CurveBounds(M, X, box);
   for (int d = 0; d < 2; d++) {
     const PetscReal off = point[d] - 0.5 * (box[2 * d] + box[2 * d + 1]);
     at[d] = period[d] > 0 ? point[d] - period[d] * PetscFloorReal(off / period[d] + 0.5) : point[d];

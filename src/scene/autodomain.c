@@ -94,7 +94,7 @@ static PetscErrorCode ExtentMeasure(Draft s, Extent *e) {
   Pose *pose;
   PetscFunctionBeginUser;
   PetscCall(KindsCreate(s, &kinds));
-  *e = (Extent){kinds.vesicles, PETSC_MAX_REAL, 0, KIND_NOWHERE, PETSC_MAX_REAL};
+  *e = (Extent){kinds.vesicles, PETSC_MAX_REAL, 0, CURVE_NOWHERE, PETSC_MAX_REAL};
   for (PetscInt k = 0; k < kinds.kinds; k++) {
     e->small = PetscMin(e->small, kinds.kind[k].length / (2 * PETSC_PI));
     e->large = PetscMax(e->large, kinds.kind[k].length / (2 * PETSC_PI));

@@ -50,9 +50,9 @@ static PetscErrorCode ObstacleCheckPlace(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
   const PetscReal h = FluidSpecCellSize(&scene->fluid);
-  PetscReal around[4];
+  PetscReal around[4] = CURVE_NOWHERE;
   PetscFunctionBeginUser;
-  ShapeBounds(s, b, around);
+  CurveBounds(s->start[b + 1] - s->start[b], s->X + 2 * s->start[b], around);
   for (int d = 0; d < 2; d++) {
     const PetscBool along = own->wall[b] < 0 || own->wall[b] / 2 != d ? PETSC_TRUE : PETSC_FALSE;
     const PetscReal low = around[2 * d], high = around[2 * d + 1];

@@ -196,7 +196,7 @@ static PetscErrorCode ObstaclesPlaceMarkers(Scene scene, const Outlines *o, Scen
     const Outline *one = &o->of[k];
     const PetscInt n = shape->start[k + 1] - shape->start[k];
     PetscReal *X = shape->X + 2 * shape->start[k];
-    PetscCall(CurveEqualArcs(&one->curve, one->curve.kind.type == CURVE_OPEN ? one->part : NULL, n, X));
+    PetscCall(CurveEqualEdges(&one->curve, one->curve.kind.type == CURVE_OPEN ? one->part : NULL, PETSC_FALSE, n, X));
     for (PetscInt j = 0; j < 2 * n; j++) X[j] += one->center[j % 2];
     for (int c = 0; c < 2; c++) own->velocity[2 * k + c] = one->note.velocity[c];
     own->turn[k] = one->note.rotation;

@@ -95,17 +95,15 @@ static PetscErrorCode KindCheckSpacing(Scene scene, const Kind *kind, PetscInt M
 }
 
 PetscErrorCode KindFit(Scene scene, Kind *kind) {
+  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
   PetscReal left;
   PetscFunctionBeginUser;
   PetscCall(KindMarkerCount(scene, kind, &kind->M));
   PetscCall(KindCheckSpacing(scene, kind, kind->M));
   PetscCall(PetscMalloc1(2 * kind->M, &kind->X));
-  if (scene->membrane.derivative == DERIVATIVE_SPECTRAL) {
-    PetscCall(CurveEqualArcs(&kind->curve, NULL, kind->M, kind->X));
-    /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
-    PetscCall(CurveFit(kind->M, PETSC_TRUE, kind->length, kind->area, kind->X, MAX_NEWTON, &left));
-  } else
-    PetscCall(CurveEqualChords(&kind->curve, kind->M, kind->X));
+  PetscCall(CurveEqualEdges(&kind->curve, NULL, spectral ? PETSC_FALSE : PETSC_TRUE, kind->M, kind->X));
+  /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
+  if (spectral) PetscCall(CurveFit(kind->M, spectral, kind->length, kind->area, kind->X, MAX_NEWTON, &left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

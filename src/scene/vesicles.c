@@ -37,10 +37,7 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
     PetscReal X[2];
     CurveEvaluate(&kind->curve, (PetscReal)k / OUTLINE, X);
     KindPlace(kind, at, 1, X, X);
-    for (int d = 0; d < 2; d++) {
-      around[2 * d] = PetscMin(around[2 * d], X[d]);
-      around[2 * d + 1] = PetscMax(around[2 * d + 1], X[d]);
-    }
+    CurveBounds(1, X, around);
   }
 }
 
@@ -48,7 +45,7 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
    the curve. */
 static PetscErrorCode VesicleCheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
-  PetscReal around[4] = KIND_NOWHERE;
+  PetscReal around[4] = CURVE_NOWHERE;
   char size[256];
   PetscFunctionBeginUser;
   PetscCall(VesicleSizeOptions(scene, v, size, sizeof(size)));
@@ -69,16 +66,40 @@ static PetscErrorCode VesicleCheckRoom(Scene scene, const Kind *kind, const Pose
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first two vesicles of which one, or an image of it, lies within the other, given that no vesicles cross; -1:
-   none. */
-static void VesiclesFindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
-  for (PetscInt a = 0; a < s->vesicles; a++)
-    for (PetscInt b = 0; b < s->vesicles; b++) {
-      if (a == b || !ShapeHolds(s, a, s->X + 2 * s->start[b], period)) continue;
-      pair[0] = PetscMin(a, b);
-      pair[1] = PetscMax(a, b);
-      return;
-    }
+/* A search for a vesicle whose first marker, or an image of it, lies within another vesicle. */
+typedef struct {
+  const Shape *shape;
+  const PetscReal *period;
+  PetscInt *pair;
+} WithinSearch;
+
+/* Vesicle i has point i, its middle, and point vesicles + i, its first marker. */
+static PetscBool VesicleIsWithin(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  const WithinSearch *w = (const WithinSearch *)context;
+  const Shape *s = w->shape;
+  const PetscInt within = j - s->vesicles;
+  (void)d;
+  if (within < 0 || within == i || !ShapeHolds(s, i, s->X + 2 * s->start[within], w->period)) return PETSC_FALSE;
+  w->pair[0] = PetscMin(i, within);
+  w->pair[1] = PetscMax(i, within);
+  return PETSC_TRUE;
+}
+
+/* Two vesicles of which one, or an image of it, lies within the other, given that no vesicles cross; -1: none. A point
+   within a vesicle is nearer to the middle than half its length. */
+static PetscErrorCode VesiclesFindWithin(const Shape *s, const PetscReal period[2], PetscInt pair[2]) {
+  const PetscInt n = s->vesicles, middles[2] = {0, n};
+  WithinSearch search = {s, period, pair};
+  PetscReal *X;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(4 * n, &X));
+  for (PetscInt v = 0; v < n; v++) {
+    ShapeMiddle(s, v, X + 2 * v);
+    PetscCall(PetscArraycpy(X + 2 * (n + v), s->X + 2 * s->start[v], 2));
+  }
+  PetscCall(PairsWithin(2 * n, X, middles, period, s->longest / 2, VesicleIsWithin, &search));
+  PetscCall(PetscFree(X));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */
@@ -94,7 +115,7 @@ static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
              "%s: vesicle %" PetscInt_FMT
              " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",
              scene->vesicles.shape == SHAPE_FILE ? "-vesicle_file" : "-domain_box", pair[0] + 1);
-  if (pair[0] < 0) VesiclesFindWithin(s, period, pair);
+  if (pair[0] < 0) PetscCall(VesiclesFindWithin(s, period, pair));
   PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
              "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
              " overlap; allowed: vesicles apart from one another",

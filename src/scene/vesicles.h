@@ -38,8 +38,5 @@ PETSC_EXTERN PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pos
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);
 
-/* KindExtend - make the rectangle around[4] (x_min, x_max, y_min, y_max; KIND_NOWHERE is empty) hold a kind's curve,
-   turned and moved. Not collective. */
-#define KIND_NOWHERE                                                                                                   \
-  { PETSC_MAX_REAL, -PETSC_MAX_REAL, PETSC_MAX_REAL, -PETSC_MAX_REAL }
+/* KindExtend - make the rectangle around[4] of CurveBounds hold a kind's curve, turned and moved. Not collective. */
 PETSC_EXTERN void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]);

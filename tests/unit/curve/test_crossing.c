@@ -102,6 +102,7 @@ PetscErrorCode Facts(void) {
                     over[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0.99, 1, 0.5, 0, 1}},
                     inside[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 0.5, 0.2, 0, 1}},
                     eight[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 3, 1, 0.5, 0.1, 2}},
+                    same[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 1, 0.5, 0, 1}},
                     seam[2] = {{0, 0, 1, 0.5, 0, 1}, {2.5, 0, 1, 0.5, 0, 1}},
                     /* the right-hand one's tip in the other's hollow end: chords of the hollow cut into the tip */
       nested[2] = {{0, 0, 0.4, 1, -0.3, 1}, {0.7105, 0.0785, 0.6, 0.01, 0, 1}};
@@ -114,6 +115,7 @@ PetscErrorCode Facts(void) {
     PetscCall(CheckLoops("one above the other", apart, 0, curves, -1, -1));
     PetscCall(CheckLoops("a little lower", over, 0, curves, 0, 1));
     PetscCall(CheckLoops("one in the other", inside, 0, curves, -1, -1));
+    PetscCall(CheckLoops("two equal ones", same, 0, curves, 0, 1));
     PetscCall(CheckLoops("a figure of eight", eight, 0, curves, 1, 1));
     PetscCall(CheckLoops("beside one another", seam, 0, curves, -1, -1));
     PetscCall(CheckLoops("over a seam", seam, 4, curves, 0, 1));
