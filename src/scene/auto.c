@@ -59,7 +59,7 @@ static PetscReal VesicleCompression(Scene scene, PetscInt v) {
     xy += x * y;
   }
   const PetscReal angle = 0.5 * PetscAtan2Real(2 * xy, xx - yy), c = PetscCosReal(angle), d = PetscSinReal(angle);
-  FlowGradient(&scene->flow, 0, mean[0], mean[1], G);
+  FlowGradient(&scene->flow, mean[1], G);
   const PetscReal rate = -(G[0][0] * c * c + (G[0][1] + G[1][0]) * c * d + G[1][1] * d * d);
   return rate > ALIGNED * (PetscAbsReal(G[0][0]) + PetscAbsReal(G[0][1] + G[1][0])) ? rate : 0;
 }

@@ -18,19 +18,25 @@ static PetscErrorCode RuleValue(Scene scene, const char name[], size_t length, c
 }
 
 PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]) {
-  char text[PETVES_MAX_MESSAGE] = "", name[64];
-  size_t k = 0, used = 0;
+  char text[PETVES_MAX_MESSAGE] = "", part[PETVES_MAX_MESSAGE];
+  size_t used = 0;
   PetscFunctionBeginUser;
-  while (k < rules && !rule[k].broken) k++;
-  if (k == rules) PetscFunctionReturn(PETSC_SUCCESS);
-  for (const char *p = rule[k].message; *p && used < sizeof(text) - 1; used += strlen(text + used)) {
-    const size_t n = strcspn(p, *p == '{' ? "}" : "{");
-    if (*p == '{') {
-      PetscCall(PetscStrncpy(name, p + 1, PetscMin(n, sizeof(name))));
-      PetscCall(RuleValue(scene, name, sizeof(text) - used, text + used));
-    } else
-      PetscCall(PetscStrncpy(text + used, p, PetscMin(n + 1, sizeof(text) - used)));
-    p += n + (*p == '{');
+  while (rules && !rule->broken) rule++, rules--;
+  if (!rules) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal *number = rule->number;
+  for (const char *p = rule->message; *p && used < sizeof(text) - 1; used += strlen(text + used)) {
+    const PetscBool special = *p == '{' || *p == '%' ? PETSC_TRUE : PETSC_FALSE;
+    const size_t n = strcspn(p, *p == '{' ? "}" : *p == '%' ? "gfc" : "{%"), left = sizeof(text) - used;
+    (void)snprintf(part, sizeof(part), "%.*s", (int)(n + (*p == '%')), p);
+    if (*p == '{')
+      PetscCall(RuleValue(scene, part + 1, left, text + used));
+    else if (*p != '%')
+      (void)snprintf(text + used, left, "%s", part);
+    else if (part[n] == 'c')
+      (void)snprintf(text + used, left, part, (int)*number++);
+    else
+      PetscCall(PetscSNPrintf(text + used, left, part, (double)*number++)); /* PETSc writes 2 as 2. */
+    p += n + special;
   }
   PetvesCheck(PETSC_FALSE, scene->comm, "%s", text);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -46,43 +52,32 @@ PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 /* Lists of a fixed length. */
-static PetscErrorCode SceneCheckLengths(Scene scene) {
-  const struct {
-    const char *name;
-    PetscInt n, wanted;
-    const char *allowed;
-  } lists[] = {{"-domain_box", scene->domain.box.n, 4, "x_min,x_max,y_min,y_max"},
-               {"-domain_cells", scene->domain.cells.n, 2, "two, cells in x and in y"},
-               {"-flow_velocity", scene->flow.velocity.n, 2, "two, u_x,u_y"},
-               {"-fluid_gravity", scene->gravity.g.n, 2, "two, g_x,g_y"}};
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 4; k++)
-    PetvesCheck(lists[k].n == lists[k].wanted, scene->comm, "%s: %" PetscInt_FMT " numbers given; allowed: %s",
-                lists[k].name, lists[k].n, lists[k].allowed);
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscErrorCode SceneCheckLengths(Scene s) {
+  const PetscInt box = s->domain.box.n, cells = s->domain.cells.n, u = s->flow.velocity.n, g = s->gravity.g.n;
+  const SceneRule rules[] = {
+    {box != 4, "-domain_box: %.0f numbers given; allowed: x_min,x_max,y_min,y_max", {box}},
+    {cells != 2, "-domain_cells: %.0f numbers given; allowed: two, cells in x and in y", {cells}},
+    {u != 2, "-flow_velocity: %.0f numbers given; allowed: two, u_x,u_y", {u}},
+    {g != 2, "-fluid_gravity: %.0f numbers given; allowed: two, g_x,g_y", {g}}};
+  return REFUSE(s, rules);
 }
 
-PetscErrorCode SceneCheckCells(Scene scene) {
-  const PetscReal *b = scene->domain.box.v;
-  const PetscInt *n = scene->domain.cells.v;
-  const PetscReal hx = (b[1] - b[0]) / n[0], hy = (b[3] - b[2]) / n[1];
+PetscErrorCode SceneCheckCells(Scene s) {
+  const PetscReal *b = s->domain.box.v, nx = s->domain.cells.v[0], ny = s->domain.cells.v[1];
+  const PetscReal hx = (b[1] - b[0]) / nx, hy = (b[3] - b[2]) / ny;
   const PetscReal far = PetscMax(PetscMax(-b[0], b[1]), PetscMax(-b[2], b[3])) / hx;
-  PetscFunctionBeginUser;
-  PetscCheck(far * PETSC_MACHINE_EPSILON < 1e-6, scene->comm, PETSC_ERR_USER_INPUT,
-             "-domain_box %g,%g,%g,%g: reaches %.2g cells from 0,0, where places are rounded to 1e-6 cells or more; "
-             "allowed: a box nearer to 0,0",
-             (double)b[0], (double)b[1], (double)b[2], (double)b[3], (double)far);
-  PetscCheck(2. * n[0] * n[1] < (double)PETSC_MAX_INT, scene->comm, PETSC_ERR_USER_INPUT,
-             "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
-             ": %.3g cells are more than this PETSc can number; allowed: at most %.3g in all",
-             n[0], n[1], (double)n[0] * n[1], (double)PETSC_MAX_INT / 2);
-  PetscCheck(PetscAbsReal(hx - hy) <= 1e-10 * hx, scene->comm, PETSC_ERR_USER_INPUT,
-             "-domain_cells %" PetscInt_FMT ",%" PetscInt_FMT
-             ": cells of %g x %g; allowed: square cells, for this -domain_box %g cells in y",
-             n[0], n[1], (double)hx, (double)hy, (double)((b[3] - b[2]) / hx));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const SceneRule rules[] = {
+    {far * PETSC_MACHINE_EPSILON >= 1e-6,
+     "-domain_box {-domain_box}: reaches %.2g cells from 0,0, where places are rounded to 1e-6 cells or more; allowed: a box nearer to 0,0", {far}},
+    {2 * nx * ny >= (PetscReal)PETSC_MAX_INT,
+     "-domain_cells {-domain_cells}: %.3g cells are more than this PETSc can number; allowed: at most %.3g in all", {nx * ny, PETSC_MAX_INT / 2}},
+    {PetscAbsReal(hx - hy) > 1e-10 * hx,
+     "-domain_cells {-domain_cells}: cells of %g x %g; allowed: square cells, for this -domain_box %g cells in y", {hx, hy, (b[3] - b[2]) / hx}}};
+  return REFUSE(s, rules);
 }
+/* clang-format on */
 
 /* A list has `each` numbers a vesicle, or (shared) `each` for all of them. */
 static PetscErrorCode SceneCheckVesicleList(Scene scene, const char name[], PetscInt n, PetscInt each,
@@ -268,7 +263,9 @@ PetscErrorCode SceneCheckBodies(Scene s) {
     {free && !quasi,
      "-fluid_inertia {-fluid_inertia}: not with -domain_bc_x free, which is quasi-steady; allowed: none"},
     {free && s->coupling.box_part,
-     "-coupling_box_part true: not with -domain_bc_x free, where there is no box; allowed: false"}};
+     "-coupling_box_part true: not with -domain_bc_x free, where there is no box; allowed: false"},
+    {free && vesicles > SCENE_MOST_FREE,
+     "-domain_bc_x free: %.0f vesicles, every pair of which is summed; allowed: up to %.0f, or a large -domain_box with walls", {vesicles, SCENE_MOST_FREE}}};
   const SceneRule forces[] = {
     {free && SceneHasGravity(s),
      "-fluid_gravity {-fluid_gravity}: not with -domain_bc_x free, where a body under a force has no finite velocity in two dimensions; allowed: walls, or periodic boundaries"},
@@ -284,10 +281,6 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   /* clang-format on */
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, unbounded));
-  PetvesCheck(!free || vesicles <= SCENE_MOST_FREE, s->comm,
-              "-domain_bc_x free: %" PetscInt_FMT " vesicles, every pair of which is summed; allowed: up to %d, or a "
-              "large -domain_box with walls",
-              vesicles, SCENE_MOST_FREE);
   PetscCall(FlowCheckDivergence(s->comm, &s->flow, f->box, FluidSpecCellSize(f)));
   PetscCall(SceneCheckList(s, "-vesicle_density_difference", s->gravity.density.n, 1, entries, what, "a vesicle"));
   PetscCall(REFUSE(s, forces));

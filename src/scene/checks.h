@@ -4,18 +4,22 @@
 #pragma once
 #include "scene/spec.h"
 
-/* A rule. In its message the value in force of an option stands for "{-name}". */
+/* A rule. In its message the value in force of an option stands for "{-name}", and the next of the numbers for each
+   conversion of printf, %g, %f or (a character) %c. */
 typedef struct {
   int broken;
   const char *message;
+  PetscReal number[6];
 } SceneRule;
 
-/* SceneRefuse - stop with the message of the first rule that is broken. SceneCheckList - stop unless a list has `each`
-   numbers (1 or 2) for all of `count` "vesicles" (what), or `each` numbers "a vesicle" (one). Collective. */
+/* SceneRefuse - stop with the message of the first rule that is broken. SCENE_REFUSE_IF - one rule. SceneCheckList -
+   stop unless a list has `each` numbers (1 or 2) for all of `count` "vesicles" (what), or `each` numbers "a vesicle"
+   (one). Collective. */
 PETSC_EXTERN PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]);
 PETSC_EXTERN PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt count,
                                            const char what[], const char one[]);
 #define REFUSE(scene, rules) SceneRefuse(scene, sizeof(rules) / sizeof((rules)[0]), rules)
+#define SCENE_REFUSE_IF(scene, ...) SceneRefuse(scene, 1, &(const SceneRule){__VA_ARGS__})
 
 #define SCENE_MOST_FREE 30 /* vesicles in unbounded fluid: all pairs are summed, beyond it a large box is faster */
 

@@ -2,31 +2,34 @@
 #include "scene/flow.h"
 #include "base/agree.h"
 
+/* A flow of the table, with the place d from the flow's centre:
+
+     u_a = c_a + SUM_b G_ab d_b,   and u_x has q d_y^2 too. */
+typedef struct {
+  PetscReal c[2], G[2][2], q;
+} FlowForm;
+
+static FlowForm FlowFormOf(const Flow *flow) {
+  FlowForm f = {0};
+  if (flow->type == FLOW_SHEAR) f.G[0][1] = flow->rate;
+  if (flow->type == FLOW_EXTENSION) {
+    f.G[0][0] = flow->rate;
+    f.G[1][1] = -flow->rate;
+  }
+  if (flow->type == FLOW_POISEUILLE) {
+    f.c[0] = flow->peak;
+    f.q = -flow->peak / PetscSqr(flow->half_width);
+  }
+  for (int k = 0; k < 2 && flow->type == FLOW_UNIFORM; k++) f.c[k] = flow->velocity.v[k];
+  return f;
+}
+
 void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal u[2]) {
-  const PetscReal dx = x - flow->center[0], dy = y - flow->center[1];
-  u[0] = u[1] = 0;
-  switch (flow->type) {
-  case FLOW_SHEAR:
-    u[0] = flow->rate * dy;
-    break;
-  case FLOW_POISEUILLE:
-    u[0] = flow->peak * (1 - PetscSqr(dy / flow->half_width));
-    break;
-  case FLOW_EXTENSION:
-    u[0] = flow->rate * dx;
-    u[1] = -flow->rate * dy;
-    break;
-  case FLOW_UNIFORM:
-    for (int c = 0; c < 2; c++) u[c] = flow->velocity.v[c];
-    break;
-  case FLOW_CUSTOM: {
-    const PetscReal X[2] = {x, y};
-    if (flow->function(t, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
-    break;
-  }
-  default:
-    break;
-  }
+  const PetscReal dx = x - flow->center[0], dy = y - flow->center[1], X[2] = {x, y};
+  const FlowForm f = FlowFormOf(flow);
+  for (int k = 0; k < 2; k++) u[k] = f.c[k] + f.G[k][0] * dx + f.G[k][1] * dy;
+  u[0] += f.q * dy * dy;
+  if (flow->type == FLOW_CUSTOM && flow->function(t, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
 }
 
 PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[],
@@ -53,27 +56,14 @@ PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void FlowGradient(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal gradient[2][2]) {
-  const PetscReal dy = y - flow->center[1];
-  gradient[0][0] = gradient[0][1] = gradient[1][0] = gradient[1][1] = 0;
-  switch (flow->type) {
-  case FLOW_SHEAR:
-    gradient[0][1] = flow->rate;
-    break;
-  case FLOW_POISEUILLE:
-    gradient[0][1] = -2 * flow->peak * dy / PetscSqr(flow->half_width);
-    break;
-  case FLOW_EXTENSION:
-    gradient[0][0] = flow->rate;
-    gradient[1][1] = -flow->rate;
-    break;
-  default:
-    break;
-  }
+void FlowGradient(const Flow *flow, PetscReal y, PetscReal gradient[2][2]) {
+  const FlowForm f = FlowFormOf(flow);
+  for (int k = 0; k < 4; k++) gradient[k / 2][k % 2] = f.G[k / 2][k % 2];
+  gradient[0][1] += 2 * f.q * (y - flow->center[1]);
 }
 
 void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]) {
-  g[0] = flow->type == FLOW_POISEUILLE ? -2 * nu * flow->peak / PetscSqr(flow->half_width) : 0;
+  g[0] = 2 * nu * FlowFormOf(flow).q;
   g[1] = 0;
 }
 
@@ -88,45 +78,34 @@ PetscReal FlowShearRate(const Flow *flow) {
 #define TOLERATED 1e-3 /* divergence over the largest gradient: flows from tables of numbers have some */
 #define ROUNDOFF 1e-11 /* of a velocity, which differences show too */
 
-typedef struct {
-  PetscReal divergence, x, y; /* the largest, and where */
-  PetscReal gradient, speed;  /* largest values */
-} Largest;
-
-/* Differences about one point from the velocities to its right, left, top and bottom. */
-static void FlowCompare(const PetscReal u[8], PetscReal x, PetscReal y, PetscReal apart, Largest *most) {
-  const PetscReal ux = (u[0] - u[2]) / apart, vx = (u[1] - u[3]) / apart;
-  const PetscReal uy = (u[4] - u[6]) / apart, vy = (u[5] - u[7]) / apart;
-  const PetscReal gradient = PetscMax(PetscMax(PetscAbsReal(ux), PetscAbsReal(uy)),
-                                      PetscMax(PetscAbsReal(vx), PetscAbsReal(vy)));
-  for (int k = 0; k < 8; k++) most->speed = PetscMax(most->speed, PetscAbsReal(u[k]));
-  most->gradient = PetscMax(most->gradient, gradient);
-  if (PetscAbsReal(ux + vy) <= PetscAbsReal(most->divergence)) return;
-  most->divergence = ux + vy;
-  most->x = x;
-  most->y = y;
-}
-
 PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h) {
   const PetscReal step = STEP * h;
   char message[PETVES_MAX_MESSAGE] = "";
-  Largest most = {0};
+  PetscReal divergence = 0, where[2] = {0, 0}, gradient = 0, speed = 0; /* the largest values */
   PetscFunctionBeginUser;
   if (flow->type != FLOW_CUSTOM) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < POINTS * POINTS && !*message; k++) {
     const PetscReal x = box[0] + (box[1] - box[0]) * ((PetscReal)(k % POINTS) + 0.5) / POINTS;
     const PetscReal y = box[2] + (box[3] - box[2]) * ((PetscReal)(k / POINTS) + 0.5) / POINTS;
     const PetscReal at[8] = {x + step, y, x - step, y, x, y + step, x, y - step};
-    PetscReal u[8];
+    PetscReal u[8] = {0}, slope[4];
     PetscCall(FlowVelocities(flow, 0, 4, at, u, message));
-    if (!*message) FlowCompare(u, x, y, 2 * step, &most);
+    for (int j = 0; j < 4; j++) { /* u_x and u_y by x, then by y */
+      const PetscReal *ahead = u + 4 * (j / 2) + j % 2;
+      slope[j] = (ahead[0] - ahead[2]) / (2 * step);
+      gradient = PetscMax(gradient, PetscAbsReal(slope[j]));
+      speed = PetscMax(speed, PetscMax(PetscAbsReal(ahead[0]), PetscAbsReal(ahead[2])));
+    }
+    if (PetscAbsReal(slope[0] + slope[3]) <= PetscAbsReal(divergence)) continue;
+    divergence = slope[0] + slope[3];
+    where[0] = x;
+    where[1] = y;
   }
-  if (!*message && PetscAbsReal(most.divergence) > TOLERATED * most.gradient + ROUNDOFF * most.speed / step)
+  if (!*message && PetscAbsReal(divergence) > TOLERATED * gradient + ROUNDOFF * speed / step)
     PetscCall(PetscSNPrintf(message, sizeof(message),
                             "-flow_type custom: u_inf has the divergence %.3g at (%.3g, %.3g), time 0; allowed: none, "
                             "here up to %.1g, a thousandth of its largest gradient",
-                            (double)most.divergence, (double)most.x, (double)most.y,
-                            (double)(TOLERATED * most.gradient)));
+                            (double)divergence, (double)where[0], (double)where[1], (double)(TOLERATED * gradient)));
   PetscCall(AgreeMessage(comm, message));
   PetvesCheck(!*message, comm, "%s", message);
   PetscFunctionReturn(PETSC_SUCCESS);

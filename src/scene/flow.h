@@ -33,6 +33,6 @@ PETSC_EXTERN PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow,
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);
 
-/* FlowGradient - gradient[a][b] = d(u_inf)_a/dx_b at (x, y) and time t; not of a custom flow, which has none
-   to give. */
-PETSC_EXTERN void FlowGradient(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal gradient[2][2]);
+/* FlowGradient - gradient[a][b] = d(u_inf)_a/dx_b at y, the same at every x; not of a custom flow, which has none to
+   give. */
+PETSC_EXTERN void FlowGradient(const Flow *flow, PetscReal y, PetscReal gradient[2][2]);

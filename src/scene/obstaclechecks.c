@@ -22,49 +22,38 @@ static PetscErrorCode ObstaclesCheckMethod(Scene s) {
      "-obstacle_shape: needs the box part of the near field, without which its forces are wrong by parts of a hundred; allowed: -coupling_box_part true in a box whose periods are at most 4 times its other side"}};
   return REFUSE(s, rules);
 }
-/* clang-format on */
 
-/* Check that a curve fits into the box and keeps its distance from the walls that it does not stand on. The least
-   distance is KERNEL_FOLDED_CELLS for closed curves, which have finer points next to a wall (layers/finecurve.h), and a
-   marker spacing for others. */
-static PetscErrorCode ObstacleCheckRoom(Scene scene, PetscInt b, int d, PetscReal low, PetscReal high) {
-  const SceneObstacles *own = &scene->obstacles;
-  const FluidSpec *f = &scene->fluid;
-  const PetscReal h = FluidSpecCellSize(f), room[2] = {low - f->box[2 * d], f->box[2 * d + 1] - high};
-  const PetscReal least = own->outline.kind[b].type == CURVE_CLOSED ? KERNEL_FOLDED_CELLS : own->spacing;
-  PetscFunctionBeginUser;
-  PetscCheck(high - low < f->box[2 * d + 1] - f->box[2 * d], scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: obstacle %" PetscInt_FMT " is %g long in %c; allowed: one that fits into -domain_box",
-             b + 1, (double)(high - low), "xy"[d]);
-  for (int side = 0; side < 2; side++)
-    PetscCheck(f->bc[d] != BC_WALL || own->wall[b] == 2 * d + side || room[side] >= least * h * (1 - 1e-12),
-               scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " comes to %.3g cells of a wall in %c; allowed: at least %g",
-               b + 1, (double)(room[side] / h), "xy"[d], (double)least);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Check the place of a curve, and that the curve is at least LEAST_ACROSS cells across: a bump only along its wall; a
-   spanning curve may be flat. */
+/* Check that a curve is at least LEAST_ACROSS cells across (a bump only along its wall; a spanning curve may be flat),
+   fits into the box and keeps its distance from the walls that it does not stand on. The least distance is
+   KERNEL_FOLDED_CELLS for closed curves, which have finer points next to a wall (layers/finecurve.h), and a marker
+   spacing for others. */
 static PetscErrorCode ObstacleCheckPlace(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
+  const FluidSpec *f = &scene->fluid;
   const Shape *s = &own->outline;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid);
+  const PetscInt type = s->kind[b].type, wall = own->wall[b];
+  const PetscReal h = FluidSpecCellSize(f), least = type == CURVE_CLOSED ? KERNEL_FOLDED_CELLS : own->spacing;
   PetscReal around[4] = CURVE_NOWHERE;
   PetscFunctionBeginUser;
   CurveBounds(s->start[b + 1] - s->start[b], s->X + 2 * s->start[b], around);
   for (int d = 0; d < 2; d++) {
-    const PetscBool along = own->wall[b] < 0 || own->wall[b] / 2 != d ? PETSC_TRUE : PETSC_FALSE;
-    const PetscReal low = around[2 * d], high = around[2 * d + 1];
-    PetscCheck(!along || s->kind[b].type == CURVE_SPANNING || high - low >= LEAST_ACROSS * h * (1 - 1e-2), scene->comm,
-               PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " is %.3g cells across in %c; allowed: at least %d, so finer "
-               "-domain_cells or a larger one",
-               b + 1, (double)((high - low) / h), "xy"[d], LEAST_ACROSS);
-    PetscCall(ObstacleCheckRoom(scene, b, d, low, high));
+    const PetscBool walls = f->bc[d] == BC_WALL, along = wall < 0 || wall / 2 != d;
+    const PetscReal low = around[2 * d], high = around[2 * d + 1], beyond = least * h * (1 - 1e-12);
+    const PetscReal room[2] = {low - f->box[2 * d], f->box[2 * d + 1] - high};
+    const SceneRule rules[] = {
+      {along && type != CURVE_SPANNING && high - low < LEAST_ACROSS * h * (1 - 1e-2),
+       "-obstacle_shape: obstacle %.0f is %.3g cells across in %c; allowed: at least %.0f, so finer -domain_cells or a larger one", {b + 1, (high - low) / h, "xy"[d], LEAST_ACROSS}},
+      {high - low >= f->box[2 * d + 1] - f->box[2 * d],
+       "-obstacle_shape: obstacle %.0f is %g long in %c; allowed: one that fits into -domain_box", {b + 1, high - low, "xy"[d]}},
+      {walls && wall != 2 * d && room[0] < beyond,
+       "-obstacle_shape: obstacle %.0f comes to %.3g cells of a wall in %c; allowed: at least %g", {b + 1, room[0] / h, "xy"[d], least}},
+      {walls && wall != 2 * d + 1 && room[1] < beyond,
+       "-obstacle_shape: obstacle %.0f comes to %.3g cells of a wall in %c; allowed: at least %g", {b + 1, room[1] / h, "xy"[d], least}}};
+    PetscCall(REFUSE(scene, rules));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
 
 /* TRUE if curve b, or an image of it, holds the point; a spanning curve holds no point. */
 static PetscBool ObstacleHolds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
@@ -124,26 +113,24 @@ static PetscInt ObstacleSolidAt(const SceneObstacles *own, PetscInt self, const 
 }
 
 /* Check that no vesicle and no obstacle is in a solid. */
+/* clang-format off */
 static PetscErrorCode ObstaclesCheckInside(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline, *vesicles = &scene->shape;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < vesicles->vesicles; v++) {
     const PetscInt b = ObstacleSolidAt(own, -1, vesicles->X + 2 * vesicles->start[v], period);
-    PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
-               "-vesicle_center: vesicle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
-               "; allowed: vesicles in the fluid",
-               v + 1, b + 1);
+    PetscCall(SCENE_REFUSE_IF(scene, b >= 0,
+      "-vesicle_center: vesicle %.0f lies in the solid of obstacle %.0f; allowed: vesicles in the fluid", {v + 1, b + 1}));
   }
   for (PetscInt c = 0; c < s->vesicles; c++) {
     const PetscInt b = ObstacleSolidAt(own, c, s->X + 2 * s->start[c], period);
-    PetscCheck(b < 0, scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_shape: obstacle %" PetscInt_FMT " lies in the solid of obstacle %" PetscInt_FMT
-               "; allowed: obstacles in the fluid, apart from one another",
-               c + 1, b + 1);
+    PetscCall(SCENE_REFUSE_IF(scene, b >= 0,
+      "-obstacle_shape: obstacle %.0f lies in the solid of obstacle %.0f; allowed: obstacles in the fluid, apart from one another", {c + 1, b + 1}));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
 
 /* Find the containers around obstacles and vesicles and the vesicles around obstacles, given that no curves cross. */
 static void ObstaclesFindAround(const Shape *vesicles, const PetscReal period[2], SceneObstacles *own) {
@@ -159,6 +146,7 @@ static void ObstaclesFindAround(const Shape *vesicles, const PetscReal period[2]
 }
 
 /* Check that markers resolve the gaps between obstacles and between an obstacle and its images. */
+/* clang-format off */
 static PetscErrorCode ObstaclesCheckGaps(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
@@ -169,19 +157,18 @@ static PetscErrorCode ObstaclesCheckGaps(Scene scene, const PetscReal period[2])
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * s->start[s->vesicles], &X));
   for (PetscInt b = 0; b < s->vesicles; b++) /* clockwise where the fluid is inside */
-    for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++)
-      PetscCall(
-          PetscArraycpy(X + 2 * k, s->X + 2 * (own->container[b] ? s->start[b] + s->start[b + 1] - 1 - k : k), 2));
+    for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++) {
+      const PetscInt from = own->container[b] ? s->start[b] + s->start[b + 1] - 1 - k : k;
+      PetscCall(PetscArraycpy(X + 2 * k, s->X + 2 * from, 2));
+    }
   const CurveSet set = {s->vesicles, s->vesicles, s->start, s->kind, X, period, PETSC_TRUE, NULL};
   PetscCall(CurveGaps(&set, SCENE_LEAST_GAP * spacing, &n, &gap));
-  const CurveGap first = n ? gap[0] : (CurveGap){.curve = {0, 0}};
+  if (n)
+    PetscCall(SCENE_REFUSE_IF(scene, 1,
+      "-obstacle_shape: the gap between obstacles %.0f and %.0f is %.3g, %.2g marker spacings; allowed: at least %g, so farther apart or a smaller -obstacle_spacing",
+      {gap->curve[0] + 1, gap->curve[1] + 1, gap->distance, gap->distance / spacing, SCENE_LEAST_GAP}));
   PetscCall(PetscFree(gap));
   PetscCall(PetscFree(X));
-  PetscCheck(!n, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: the gap between obstacles %" PetscInt_FMT " and %" PetscInt_FMT
-             " is %.3g, %.2g marker spacings; allowed: at least %g, so farther apart or a smaller -obstacle_spacing",
-             first.curve[0] + 1, first.curve[1] + 1, (double)first.distance, (double)(first.distance / spacing),
-             SCENE_LEAST_GAP);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -202,16 +189,13 @@ static PetscErrorCode ObstaclesCheckCrossing(Scene scene, const PetscReal period
   const CurveSet set = {all, n, start, kind, X, period, PETSC_TRUE};
   PetscCall(CurvesCross(&set, pair));
   PetscCall(PetscFree3(start, kind, X));
-  const PetscInt b = pair[1] - n + 1;
-  PetscCheck(pair[0] < 0 || pair[0] >= n, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_center: vesicle %" PetscInt_FMT " crosses obstacle %" PetscInt_FMT
-             "; allowed: vesicles in the fluid",
-             pair[0] + 1, b);
-  PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape: obstacles %" PetscInt_FMT " and %" PetscInt_FMT
-             " cross; allowed: curves apart from one another, from themselves and from their images",
-             pair[0] - n + 1, b);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt a = pair[0], b = pair[1] - n + 1;
+  const SceneRule rules[] = {
+    {a >= 0 && a < n,
+     "-vesicle_center: vesicle %.0f crosses obstacle %.0f; allowed: vesicles in the fluid", {a + 1, b}},
+    {a >= n,
+     "-obstacle_shape: obstacles %.0f and %.0f cross; allowed: curves apart from one another, from themselves and from their images", {a - n + 1, b}}};
+  return REFUSE(scene, rules);
 }
 
 #define MOST_FLUX 1e-6 /* of the sum of |U| ds */
@@ -242,12 +226,8 @@ static PetscErrorCode ObstacleCheckFlux(Scene scene, PetscInt b) {
     flux += U[0] * edge[1] - U[1] * edge[0];
     all += PetscHypotReal(U[0], U[1]) * PetscHypotReal(edge[0], edge[1]);
   }
-  PetscCheck(
-      PetscAbsReal(flux) <= MOST_FLUX * all, scene->comm, PETSC_ERR_USER_INPUT,
-      "-obstacle_shape: obstacle %" PetscInt_FMT " has a flux of %.3g through it, of its surface's velocity less "
-      "a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them",
-      b + 1, (double)flux);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return SCENE_REFUSE_IF(scene, PetscAbsReal(flux) > MOST_FLUX * all,
+    "-obstacle_shape: obstacle %.0f has a flux of %.3g through it, of its surface's velocity less a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them", {b + 1, flux});
 }
 
 /* Check that only closed curves move, and that one of them does. */
@@ -260,16 +240,17 @@ static PetscErrorCode ObstaclesCheckMotion(Scene scene) {
   for (PetscInt b = 0; b < s->vesicles; b++) {
     if (own->velocity[2 * b] == 0 && own->velocity[2 * b + 1] == 0 && own->turn[b] == 0) continue;
     any = PETSC_TRUE;
-    PetscCheck(s->kind[b].type == CURVE_CLOSED, scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_moving: obstacle %" PetscInt_FMT
-               " has a velocity and %s; allowed: closed curves that move, others at rest",
-               b + 1, s->kind[b].type == CURVE_OPEN ? "stands on a wall" : "spans the box");
+    const SceneRule rules[] = {
+      {s->kind[b].type == CURVE_OPEN,
+       "-obstacle_moving: obstacle %.0f has a velocity and stands on a wall; allowed: closed curves that move, others at rest", {b + 1}},
+      {s->kind[b].type == CURVE_SPANNING,
+       "-obstacle_moving: obstacle %.0f has a velocity and spans the box; allowed: closed curves that move, others at rest", {b + 1}}};
+    PetscCall(REFUSE(scene, rules));
   }
-  PetscCheck(any, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_moving: no obstacle has a velocity or rotation; allowed: -obstacle_velocity or "
-             "-obstacle_rotation of posts and couette, lines # velocity or # rotation in -obstacle_file");
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return SCENE_REFUSE_IF(scene, !any,
+    "-obstacle_moving: no obstacle has a velocity or rotation; allowed: -obstacle_velocity or -obstacle_rotation of posts and couette, lines # velocity or # rotation in -obstacle_file");
 }
+/* clang-format on */
 
 PetscErrorCode SceneCheckObstacles(Draft scene) {
   PetscReal period[2];

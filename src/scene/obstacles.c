@@ -1,9 +1,116 @@
 /* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
    surfaces do. */
 #include "scene/obstacles.h"
+#include "kernel/kernel.h"
 #include "scene/checks.h"
-#include "scene/openbodies.h"
 #include "scene/properties.h"
+
+#define SAMPLES 4000 /* of a curve, where it is looked for its places off a wall */
+#define HALVINGS 50  /* of a sample, to find the place */
+#define LEAST_RISE 2 /* cells off its wall, in its middle */
+#define BUMP_POINTS 257
+
+/* Distance (length) of X from a wall, negative behind it. */
+static PetscReal ArcOff(const FluidSpec *f, PetscInt wall, const PetscReal X[2]) {
+  return (wall % 2 ? -1 : 1) * (X[wall / 2] - f->box[wall]);
+}
+
+/* The wall that X is nearest to, and how far that is. */
+static PetscInt ArcNearestWall(const FluidSpec *f, const PetscReal X[2], PetscReal *off) {
+  PetscInt nearest = -1;
+  *off = PETSC_MAX_REAL;
+  for (PetscInt wall = 0; wall < 4; wall++) {
+    if (f->bc[wall / 2] != BC_WALL || PetscAbsReal(ArcOff(f, wall, X)) >= PetscAbsReal(*off)) continue;
+    *off = ArcOff(f, wall, X);
+    nearest = wall;
+  }
+  return nearest;
+}
+
+/* The parameter between two at which the curve leaves the height, low below it and high above. */
+static PetscReal ArcLeave(const FluidSpec *f, const Curve *c, PetscInt wall, PetscReal height, PetscReal low,
+                          PetscReal high) {
+  for (int it = 0; it < HALVINGS; it++) {
+    const PetscReal middle = 0.5 * (low + high);
+    PetscReal X[2];
+    CurveEvaluate(c, middle, X);
+    if (ArcOff(f, wall, X) < height)
+      low = middle;
+    else
+      high = middle;
+  }
+  return high;
+}
+
+/* clang-format off */
+/* Both ends are on one wall, which is returned. */
+static PetscErrorCode ArcCheckEnds(Scene scene, PetscInt b, const Curve *c, PetscReal height, PetscInt *wall) {
+  const FluidSpec *f = &scene->fluid;
+  PetscInt at[2];
+  PetscFunctionBeginUser;
+  for (int end = 0; end < 2; end++) {
+    PetscReal X[2], off;
+    CurveEvaluate(c, end, X);
+    at[end] = ArcNearestWall(f, X, &off);
+    PetscCall(SCENE_REFUSE_IF(scene, at[end] < 0 || off > height,
+      "-obstacle_shape: obstacle %.0f is open and ends at (%g, %g), on no wall; allowed: both ends on one wall of the box, closed curves, and ones whose last point is the first but for a period", {b + 1, X[0], X[1]}));
+  }
+  *wall = at[0];
+  return SCENE_REFUSE_IF(scene, at[0] != at[1],
+    "-obstacle_shape: obstacle %.0f is open and ends on two walls; allowed: both ends on one", {b + 1});
+}
+
+/* Find which part of an open curve carries markers, part[2] of its parameter: from where it is half a marker spacing off
+   the wall that its ends are on, wall = 2 direction + side, to where it is so again. b: its number, for messages. */
+static PetscErrorCode ArcCut(Scene scene, PetscInt b, const Curve *c, PetscReal part[2], PetscInt *wall) {
+  const FluidSpec *f = &scene->fluid;
+  const PetscReal h = FluidSpecCellSize(f);
+  const PetscReal height = PetscMax(0.5 * scene->obstacles.spacing, KERNEL_FOLDED_CELLS) * h;
+  PetscReal least = PETSC_MAX_REAL, most = 0;
+  PetscFunctionBeginUser;
+  PetscCall(ArcCheckEnds(scene, b, c, height, wall));
+  for (int end = 0; end < 2; end++) {
+    const PetscReal step = (end ? -1. : 1.) / SAMPLES;
+    PetscReal t = end, X[2];
+    for (PetscInt k = 0; k < SAMPLES; k++, t += step) {
+      CurveEvaluate(c, t + step, X);
+      if (ArcOff(f, *wall, X) > height) break;
+    }
+    part[end] = ArcLeave(f, c, *wall, height, t, t + step);
+  }
+  for (PetscInt k = 0; k <= SAMPLES; k++) {
+    PetscReal X[2];
+    CurveEvaluate(c, part[0] + (part[1] - part[0]) * (PetscReal)k / SAMPLES, X);
+    least = PetscMin(least, ArcOff(f, *wall, X));
+    most = PetscMax(most, ArcOff(f, *wall, X));
+  }
+  const SceneRule rules[] = {
+    {part[0] >= part[1] || most < LEAST_RISE * h,
+     "-obstacle_shape: obstacle %.0f rises %.3g cells from its wall; allowed: at least %.0f", {b + 1, most / h, LEAST_RISE}},
+    {least < height * (1 - 1e-6),
+     "-obstacle_shape: obstacle %.0f comes back to its wall between its ends; allowed: a curve of its own for each bump", {b + 1}}};
+  return REFUSE(scene, rules);
+}
+/* clang-format on */
+
+/* One bump of a constriction, (1 - throat)/2 of the channel high in its middle, a whole wave of a cosine long, on the
+   lower (side 0) or the upper wall in y. */
+static PetscErrorCode ArcBump(Scene scene, int side, Curve *curve) {
+  const SceneObstacles *own = &scene->obstacles;
+  const PetscReal *box = scene->fluid.box, width = box[3] - box[2], middle = ListEntry(&own->center, 2, 0, 0);
+  const PetscReal length = own->length > 0 ? own->length : width, height = 0.5 * (1 - own->throat) * width;
+  const CurveKind open = {.type = CURVE_OPEN};
+  PetscReal xy[2 * BUMP_POINTS];
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < BUMP_POINTS; k++) { /* the solid on the left */
+    const PetscReal t = (PetscReal)k / (BUMP_POINTS - 1) - 0.5;
+    const PetscReal rise = 0.5 * height * (1 + PetscCosReal(2 * PETSC_PI * t));
+    xy[2 * k] = middle + (side ? t : -t) * length;
+    xy[2 * k + 1] = side ? box[3] - rise : box[2] + rise;
+  }
+  PetscCall(CurveFromPoints(&open, BUMP_POINTS, xy, curve));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* A curve before it has markers. */
 typedef struct {
@@ -29,22 +136,6 @@ static void ObstaclePlaceInLattice(Scene scene, PetscInt k, PetscReal center[2])
   center[1] = b[2] + (b[3] - b[2]) / rows * (k / columns + 0.5);
 }
 
-static PetscErrorCode ObstaclesCheckLattice(Scene scene) {
-  const SceneObstacles *own = &scene->obstacles;
-  PetscFunctionBeginUser;
-  PetscCheck(own->lattice.n == 2 && (own->lattice.v[0] > 0) == (own->lattice.v[1] > 0), scene->comm,
-             PETSC_ERR_USER_INPUT,
-             "-obstacle_lattice: %" PetscInt_FMT " numbers given; allowed: columns,rows, both above 0, or 0,0 for none",
-             own->lattice.n);
-  const PetscReal turns = own->shift * own->lattice.v[1];
-  PetscCheck(scene->fluid.bc[1] != BC_PERIODIC || PetscAbsReal(turns - PetscFloorReal(turns + 0.5)) < 1e-9, scene->comm,
-             PETSC_ERR_USER_INPUT,
-             "-obstacle_shift %g: %" PetscInt_FMT " rows are shifted by %g columns, so that the lattice breaks where "
-             "the box repeats; allowed: rows times shift a whole number",
-             (double)own->shift, own->lattice.v[1], (double)turns);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Make circles, with the velocity and rotation that the options give each of them. */
 static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
@@ -68,30 +159,35 @@ static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
+  const PetscInt columns = own->lattice.v[0], rows = own->lattice.n == 2 ? own->lattice.v[1] : -1, count = columns * rows;
+  const PetscReal turns = own->shift * rows;
+  const SceneRule rules[] = {
+    {rows < 0 || (columns > 0) != (rows > 0),
+     "-obstacle_lattice: %.0f numbers given; allowed: columns,rows, both above 0, or 0,0 for none", {own->lattice.n}},
+    {scene->fluid.bc[1] == BC_PERIODIC && PetscAbsReal(turns - PetscFloorReal(turns + 0.5)) >= 1e-9,
+     "-obstacle_shift {-obstacle_shift}: %.0f rows are shifted by %g columns, so that the lattice breaks where the box repeats; allowed: rows times shift a whole number", {rows, turns}},
+    {count && SceneGiven(scene, "-obstacle_center"),
+     "-obstacle_center: given together with -obstacle_lattice; allowed: one of them"},
+    {!count && own->center.n % 2,
+     "-obstacle_center: %.0f numbers given; allowed: x,y of each post", {own->center.n}}};
   PetscFunctionBeginUser;
-  PetscCall(ObstaclesCheckLattice(scene));
-  const PetscInt count = own->lattice.v[0] * own->lattice.v[1];
-  PetscCheck(!count || !SceneGiven(scene, "-obstacle_center"), scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_center: given together with -obstacle_lattice; allowed: one of them");
-  PetscCheck(count || own->center.n % 2 == 0, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_center: %" PetscInt_FMT " numbers given; allowed: x,y of each post", own->center.n);
+  PetscCall(REFUSE(scene, rules));
   PetscCall(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
+  const SceneRule rules[] = {
+    {own->radius.n != 2,
+     "-obstacle_shape couette: -obstacle_radius has %.0f numbers; allowed: two, the inner and the outer radius", {own->radius.n}},
+    {own->radius.n == 2 && own->radius.v[0] >= own->radius.v[1],
+     "-obstacle_shape couette: -obstacle_radius {-obstacle_radius}; allowed: the inner radius first, smaller than the outer one"}};
   PetscFunctionBeginUser;
-  PetscCheck(own->radius.n == 2, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape couette: -obstacle_radius has %" PetscInt_FMT
-             " numbers; allowed: two, the inner and the outer radius",
-             own->radius.n);
-  PetscCheck(
-      own->radius.v[0] < own->radius.v[1], scene->comm, PETSC_ERR_USER_INPUT,
-      "-obstacle_shape couette: -obstacle_radius %g,%g; allowed: the inner radius first, smaller than the outer one",
-      (double)own->radius.v[0], (double)own->radius.v[1]);
+  PetscCall(REFUSE(scene, rules));
   PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 2, "obstacles", "each"));
   PetscCall(ObstaclesMakeCircles(scene, 2, o));
   o->of[1].note.clockwise = PETSC_TRUE;
@@ -102,18 +198,20 @@ static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {
 static PetscErrorCode ObstaclesMakeConstriction(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const FluidSpec *f = &scene->fluid;
+  const SceneRule rules[] = {
+    {f->bc[1] != BC_WALL,
+     "-obstacle_shape constriction: its bumps are on the walls y_min and y_max; allowed: -domain_bc_y wall"},
+    {own->length >= f->box[1] - f->box[0],
+     "-obstacle_length {-obstacle_length}: the box is %g long; allowed: less than that", {f->box[1] - f->box[0]}}};
   PetscFunctionBeginUser;
-  PetscCheck(f->bc[1] == BC_WALL, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape constriction: its bumps are on the walls y_min and y_max; allowed: -domain_bc_y wall");
-  PetscCheck(own->length < f->box[1] - f->box[0], scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_length %g: the box is %g long; allowed: less than that", (double)own->length,
-             (double)(f->box[1] - f->box[0]));
+  PetscCall(REFUSE(scene, rules));
   PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 1, "obstacles", "each"));
   o->count = 2;
   PetscCall(PetscCalloc1(2, &o->of));
   for (int side = 0; side < 2; side++) PetscCall(ArcBump(scene, side, &o->of[side].curve));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
 
 static PetscErrorCode ObstaclesMakeFromFile(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
@@ -121,8 +219,8 @@ static PetscErrorCode ObstaclesMakeFromFile(Scene scene, Outlines *o) {
   Curve *curve;
   CurveNote *note;
   PetscFunctionBeginUser;
-  PetscCheck(*own->file, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_shape file: no -obstacle_file given; allowed: a text file with x y a line");
+  PetvesCheck(*own->file, scene->comm,
+              "-obstacle_shape file: no -obstacle_file given; allowed: a text file with x y a line");
   FluidSpecPeriods(&scene->fluid, period);
   PetscCall(CurvesFromFile(scene->comm, "-obstacle_file", own->file, period, &o->count, &curve, &note));
   PetscCall(PetscCalloc1(o->count, &o->of));
@@ -169,10 +267,10 @@ static PetscErrorCode ObstaclesChooseFactor(Scene scene, const Outlines *o, Scen
   const FluidSpec *f = &scene->fluid;
   const PetscInt markers = own->outline.start[o->count];
   const PetscBool periodic = f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool many = own->factor == OBSTACLE_FACTOR_AUTO && markers > MOST_TOGETHER && periodic;
   PetscInt most = 0;
   PetscFunctionBeginUser;
-  own->modes = own->factor == OBSTACLE_FACTOR_MODES ? PETSC_TRUE : PETSC_FALSE;
-  if (own->factor == OBSTACLE_FACTOR_AUTO && markers > MOST_TOGETHER && periodic) own->modes = PETSC_TRUE;
+  own->modes = many || own->factor == OBSTACLE_FACTOR_MODES ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = 0; k < o->count; k++) most = PetscMax(most, own->outline.start[k + 1] - own->outline.start[k]);
   if (!own->modes) most = markers;
   PetscCheck(most <= MOST_DENSE, scene->comm, PETSC_ERR_USER_INPUT,

@@ -2,7 +2,6 @@
 #include "scene/vesicles.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
-#include <stdlib.h>
 
 #define GAP_CELLS 1    /* cells of the default gap of a packing */
 #define LEEWAY 0.25    /* cells that markers fitted to an ellipse may lie beside it */
@@ -16,43 +15,34 @@ static PetscReal PackedGap(Scene scene, const Kinds *kinds) {
   return PetscMin(GAP_CELLS * FluidSpecCellSize(&scene->fluid), GAP_RADII * R0);
 }
 
-static PetscErrorCode VesicleDirection(Scene scene, PetscInt v, PetscReal along[2]) {
+static void VesicleDirection(Scene scene, PetscInt v, PetscReal along[2]) {
   const PetscReal turn = ListEntry(&scene->vesicles.angle, 1, v, 0) * PETSC_PI / 180;
-  PetscFunctionBeginUser;
   along[0] = PetscCosReal(turn);
   along[1] = PetscSinReal(turn);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-typedef struct {
-  PetscInt kind;
-  Pose pose;
-} Place;
-
-/* By kind, then from the bottom up. */
-static int PackedOrder(const void *first, const void *second) {
-  const Place *a = (const Place *)first, *b = (const Place *)second;
-  if (a->kind != b->kind) return a->kind < b->kind ? -1 : 1;
-  return (a->pose.center[1] > b->pose.center[1]) - (a->pose.center[1] < b->pose.center[1]);
 }
 
 /* Number the vesicles of each kind from the bottom up: ranks own ranges of vesicles and of the grid's rows, so that
    vesicles that are near one another, and the rows that they are in, are mostly on one rank. */
 static PetscErrorCode PackedNumber(const Kinds *kinds, Pose pose[]) {
-  PetscInt *next;
-  Place *place;
+  const PetscInt n = kinds->vesicles;
+  PetscReal *height;
+  PetscInt *from;
+  Pose *old;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(kinds->vesicles, &place));
-  PetscCall(PetscCalloc1(kinds->kinds + 1, &next));
-  for (PetscInt v = 0; v < kinds->vesicles; v++) {
-    place[v] = (Place){kinds->of[v], pose[v]};
-    next[kinds->of[v] + 1]++;
+  PetscCall(PetscMalloc3(n, &height, n, &from, n, &old));
+  PetscCall(PetscArraycpy(old, pose, n));
+  for (PetscInt k = 0; k < kinds->kinds; k++) {
+    PetscInt count = 0;
+    for (PetscInt v = 0; v < n; v++) {
+      if (kinds->of[v] != k) continue;
+      height[count] = old[v].center[1];
+      from[count++] = v;
+    }
+    PetscCall(PetscSortRealWithArrayInt(count, height, from));
+    for (PetscInt v = n - 1; v >= 0; v--)
+      if (kinds->of[v] == k) pose[v] = old[from[--count]];
   }
-  qsort(place, (size_t)kinds->vesicles, sizeof(Place), PackedOrder);
-  for (PetscInt k = 0; k < kinds->kinds; k++) next[k + 1] += next[k];
-  for (PetscInt v = 0; v < kinds->vesicles; v++) pose[v] = place[next[kinds->of[v]]++].pose;
-  PetscCall(PetscFree(next));
-  PetscCall(PetscFree(place));
+  PetscCall(PetscFree3(height, from, old));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,7 +62,7 @@ static PetscErrorCode ScenePack(Scene scene, const Kinds *kinds, Pose pose[]) {
   PetscCall(PetscMalloc1(2 * kinds->vesicles, &axes));
   for (PetscInt v = 0; v < kinds->vesicles; v++)
     PetscCall(PetscArraycpy(axes + 2 * v, kinds->kind[kinds->of[v]].curve.axes, 2));
-  PetscCall(VesicleDirection(scene, 0, along));
+  VesicleDirection(scene, 0, along);
   if (!rank && lattice) PetscCall(PackLattice(&spec, kinds->vesicles, axes, along, pose, &part));
   if (!rank && !lattice) PetscCall(PackRandomly(&spec, kinds->vesicles, axes, pose, &part));
   if (!rank && !lattice && part >= 1) PetscCall(PackedNumber(kinds, pose));
@@ -97,7 +87,7 @@ PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]) {
   }
   for (PetscInt v = 0; v < kinds->vesicles; v++) {
     for (int c = 0; c < 2; c++) pose[v].center[c] = ListEntry(&scene->vesicles.center, 2, v, c);
-    PetscCall(VesicleDirection(scene, v, pose[v].along));
+    VesicleDirection(scene, v, pose[v].along);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

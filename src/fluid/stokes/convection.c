@@ -86,7 +86,7 @@ static PetscReal Sheared(const Convection c, int f, PetscInt k, const PetscReal 
   const PetscReal *other = c->own[1 - f];
   const PetscReal mean = (other[k] + other[k + along] + other[k - across] + other[k - across + along]) / 4;
   PetscReal gradient[2][2];
-  FlowGradient(&c->flow, 0, X[0], X[1], gradient);
+  FlowGradient(&c->flow, X[1], gradient);
   return c->own[f][k] * gradient[f][f] + mean * gradient[f][1 - f];
 }
 

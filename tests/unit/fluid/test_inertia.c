@@ -78,7 +78,7 @@ static PetscReal ExactConvection(const Flow *flow, Exact f, int c, const PetscRe
   PetscReal value[3], background[2], gradient[2][2], sum = 0;
   f(at[0], at[1], at[2], value);
   FlowVelocity(flow, 0, at[0], at[1], background);
-  FlowGradient(flow, 0, at[0], at[1], gradient);
+  FlowGradient(flow, at[1], gradient);
   for (int b = 0; b < 2; b++) sum += (value[b] + background[b]) * First(f, c, b, at) + value[b] * gradient[c][b];
   return sum;
 }
