@@ -4,6 +4,7 @@ SHELL := /bin/bash
 PREFIX ?= /usr/local
 RANKS ?= 2
 SCENE ?= runs/default.opts
+OUT ?= out/$(if $(filter runs/%,$(SCENE)),$(subst /,_,$(patsubst runs/%,%,$(basename $(SCENE)))),$(notdir $(basename $(SCENE))))
 # Tests that run at the same time: of one rank, two or four each.
 WORKERS ?= 2
 # With PETSC_DIR (and PETSC_ARCH) another PETSc than Debian's; each kind of build has folders of its own.
@@ -143,8 +144,8 @@ $(BUILD)/site/.packages:
 
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
-	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_overwrite
-	PYTHONPATH=python $(PYTHON) -m petves plot $$(awk '$$1 == "-output_dir" {print $$2}' $(SCENE))
+	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_dir $(OUT) -output_overwrite
+	PYTHONPATH=python $(PYTHON) -m petves plot $(OUT)
 
 test: test-deps ## run every test; ends with "N passed, N failed"
 	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.packages
