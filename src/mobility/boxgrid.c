@@ -49,26 +49,21 @@ static PetscErrorCode BoxGridPlace(BoxGrid *b, const char kernel[]) {
 
 static PetscErrorCode BoxGridCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                                     const BoxAxis axis[2], BoxGrid *b) {
-  FluidSpec box = *spec;
   PetscFunctionBeginUser;
   *b = (BoxGrid){.axis = axis, .lattice = lattice};
-  PetscCall(PetscStrncpy(box.helmholtz, "fftw_tridiagonal", sizeof(box.helmholtz)));
-  PetscCall(PetscStrncpy(box.poisson, "fftw_tridiagonal", sizeof(box.poisson)));
-  PetscCall(FluidCreate(&box, &b->fluid));
+  PetscCall(FluidCreate(spec, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(BoxGridPlace(b, kernel));
   b->set = (LayerSetting){.markers = b->markers, .nu = spec->nu, .unit = lattice->unit};
   PetscCall(SinglePairsCreate(&b->set, lattice->stokeslet, lattice->half, &b->pairs));
   PetscCall(SinglePairsPlace(b->pairs));
-  if (lattice->dipole) {
-    PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->source));
-    PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
-    DoubleImagePlace(b->twice, b->dipole);
-  }
   if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
+  DoubleImagePlace(b->twice, b->dipole);
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->u));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
+  PetscCall(VecDuplicate(b->p, &b->source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

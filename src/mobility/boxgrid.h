@@ -23,6 +23,16 @@ typedef struct {
   PetscBool whole;           /* the smooth part itself is wanted: less the exact images in walls */
 } BoxLattice;
 
+/* BoxGridSpec - the run's fluid for tables and preconditioners: by the default solver, which cannot fail, whatever
+   solves the steps. Not collective. */
+static inline FluidSpec BoxGridSpec(const FluidSpec *run) {
+  FluidSpec spec = *run;
+  spec.form = FORM_DISTURBANCE;
+  (void)PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz));
+  (void)PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson));
+  return spec;
+}
+
 /* BoxGridAdd - W += scale times the smooth part of the grid `spec`, with the named kernel, its lattice as far as it is
    tabulated and the closed form beyond. W[2][parts][x pairs][y pairs], of a velocity component to a force component
    (velocity per force) or to a part of a tensor (velocity per tensor), whose source is spread over the whole box as

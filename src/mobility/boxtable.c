@@ -266,13 +266,10 @@ static PetscErrorCode BoxTablePair(const FluidSpec *run, const char kernel[], co
   const PetscInt shorter = PetscMin(cells[0], cells[1]), odd = cells[0] % 2 || cells[1] % 2;
   const PetscInt halves = shorter < FEW_CELLS ? 6 : shorter < RATIO_CELLS || odd ? 4 : 3; /* 2 r */
   const PetscReal scale = PetscSqr(halves * FluidSpecCellSize(run) / H) / (halves * halves - 4);
-  FluidSpec spec = *run;
+  FluidSpec spec = BoxGridSpec(run);
   PetscFunctionBeginUser;
   spec.comm = PETSC_COMM_SELF;
-  spec.form = FORM_DISTURBANCE;
   spec.inertia = INERTIA_NONE;
-  PetscCall(PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz)));
-  PetscCall(PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson)));
   for (int fine = 0; fine < (lattice->whole ? 1 : 2); fine++) {
     for (int d = 0; d < 2; d++) spec.cells[d] = fine ? halves * cells[d] / 2 : cells[d];
     PetscCall(BoxGridAdd(&spec, run->comm, kernel, lattice, axis, lattice->whole ? 1 : fine ? scale : -scale, W));

@@ -2,61 +2,7 @@
 #include "base/lanes.h"
 #include "layers/nearblock.h"
 
-#define CELLS 4  /* of the coarse grid: reach */
-#define PLACES 4 /* in a cell, in each direction */
-#define ANGLES 8 /* in a quarter turn */
-
-/* Stencils of both components of a marker at x, in cells of a lattice without ends. */
-static void LatticeStencils(const Kernel *kernel, const PetscReal x[2], PaddedStencil padded[2]) {
-  for (int c = 0; c < 2; c++) {
-    Stencil s;
-    for (int dir = 0; dir < 2; dir++) {
-      const PetscBool along = c == dir ? PETSC_TRUE : PETSC_FALSE;
-      s.n[dir] = (along ? kernel->along : kernel->across)(x[dir] - (along ? 1.0 : 0.5), &s.first[dir], s.weight[dir]);
-    }
-    StencilPad(&s, &padded[c]);
-  }
-}
-
-/* Mean over places in a cell of what the lattice makes of a force along and across the distance r (cells) at an angle.
- */
-static void LatticeMean(const OffsetTable *lattice, const Kernel *kernel, PetscReal r, PetscReal angle,
-                        PetscReal mean[2]) {
-  static const PetscInt none[2] = {0, 0};
-  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
-  mean[0] = mean[1] = 0;
-  for (int q = 0; q < PLACES * PLACES; q++) {
-    const PetscReal from[2] = {(q % PLACES + 0.5) / PLACES, ((PetscReal)(q / PLACES) + 0.5) / PLACES};
-    const PetscReal to[2] = {from[0] + r * c, from[1] + r * s};
-    PaddedStencil a[2], b[2];
-    PetscReal L[4];
-    LatticeStencils(kernel, to, a);
-    LatticeStencils(kernel, from, b);
-    StencilFourSums(lattice, a, b, none, L);
-    mean[0] += (c * c * L[0] + s * s * L[1] + c * s * (L[2] + L[3])) / (PLACES * PLACES);
-    mean[1] += (s * s * L[0] + c * c * L[1] - c * s * (L[2] + L[3])) / (PLACES * PLACES);
-  }
-}
-
-/* R by distance: the mean over directions, fading smoothly in the last quarter. */
-static void TabulateCorrection(CoarseCorrection s, const OffsetTable *lattice, const Kernel *kernel) {
-  const LayerSetting cells = {.nu = 1, .unit = 1}; /* as the lattice's table */
-  const PetscReal nu = s->mobility->fluid->nu;
-  for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
-    const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
-                    x = 4 * PetscMax(0, r / CELLS - 0.75);
-    const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x);
-    PetscReal sum[2] = {0, 0}, S[3];
-    StokesletOne(&cells, (PetscReal[]){r, 0}, 0, S);
-    for (int a = 0; a < ANGLES; a++) {
-      PetscReal mean[2];
-      LatticeMean(lattice, kernel, r, 0.5 * PETSC_PI * (a + 0.5) / ANGLES, mean);
-      for (int c = 0; c < 2; c++) sum[c] += mean[c] / ANGLES;
-    }
-    s->along[k] = fade * (S[0] - sum[0]) / nu;
-    s->across[k] = fade * (S[1] - sum[1]) / nu;
-  }
-}
+#define CELLS 4 /* of the coarse grid: reach */
 
 PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *out) {
   const PetscInt M = mobility->bodies->membrane->layout->M;
@@ -65,8 +11,8 @@ PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, Coar
   PetscCall(PetscNew(&s));
   *out = s;
   s->mobility = mobility;
-  s->reach = CELLS * coarse->fluid->grid->h;
-  TabulateCorrection(s, &mobility->near->lattice, coarse->markers->kernel);
+  s->h = coarse->fluid->grid->h;
+  PetscCall(MeanTableCreate(&mobility->near->lattice, coarse->markers->kernel, &s->mean));
   PetscCall(PetscCalloc2(2 * M, &s->force, 2 * M, &s->jump));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -74,20 +20,23 @@ PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, Coar
 PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
   PetscFunctionBeginUser;
   if (!*range) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OffsetTableDestroy(&(*range)->mean));
   PetscCall(PetscFree((*range)->pair));
   PetscCall(PetscFree2((*range)->force, (*range)->jump));
   PetscCall(PetscFree(*range));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pair of markers i and j, d apart. */
-static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
-  const PetscReal at = PetscSqrtReal(r2) / s->reach * (CORRECTION_POINTS - 1);
-  const PetscInt k = PetscMin((PetscInt)at, CORRECTION_POINTS - 2);
-  const PetscReal t = at - (PetscReal)k, across = (1 - t) * s->across[k] + t * s->across[k + 1],
-                  along = (1 - t) * s->along[k] + t * s->along[k + 1], both = r2 > 0 ? (along - across) / r2 : 0;
-  return (CorrectionPair){i, j, (float)(across + both * d[0] * d[0]), (float)(both * d[0] * d[1]),
-                          (float)(across + both * d[1] * d[1])};
+/* The pair of markers i and j, d coarse cells apart. It fades smoothly in the last quarter of the reach. */
+static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2]) {
+  const LayerSetting cells = {.nu = 1, .unit = 1};
+  const PetscReal x = PetscMax(0, 4 * PetscHypotReal(d[0], d[1]) / CELLS - 3);
+  const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x) / s->mobility->fluid->nu;
+  PetscReal S[3], L[3];
+  StokesletOne(&cells, d, 0, S);
+  MeanTableAt(&s->mean, d, L);
+  return (CorrectionPair){i, j, (float)(fade * (S[0] - L[0])), (float)(fade * (S[2] - L[2])),
+                          (float)(fade * (S[1] - L[1]))};
 }
 
 /* The pairs of marker i with those of the block's column. */
@@ -95,13 +44,14 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   const Layout l = s->mobility->bodies->membrane->layout;
   const NearBounds *column = &s->mobility->near->pairs->bounds[b->column];
   const PetscReal *X = s->mobility->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
+  const PetscReal reach = CELLS * s->h;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
-    if (x[d] < column->low[d] - s->reach || x[d] > column->high[d] + s->reach) PetscFunctionReturn(PETSC_SUCCESS);
+    if (x[d] < column->low[d] - reach || x[d] > column->high[d] + reach) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ArrayReserve((size_t)(s->pairs + LayoutCount(l, b->column)), &s->room, &s->pair));
   for (PetscInt j = l->start[b->column]; j < l->start[b->column + 1]; j++) {
-    const PetscReal d[2] = {x[0] - X[2 * j], x[1] - X[2 * j + 1]}, r2 = d[0] * d[0] + d[1] * d[1];
-    if (r2 < s->reach * s->reach) s->pair[s->pairs++] = CorrectionOf(s, i, j, d, r2);
+    const PetscReal d[2] = {(x[0] - X[2 * j]) / s->h, (x[1] - X[2 * j + 1]) / s->h};
+    if (d[0] * d[0] + d[1] * d[1] < CELLS * CELLS) s->pair[s->pairs++] = CorrectionOf(s, i, j, d);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

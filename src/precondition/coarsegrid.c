@@ -30,7 +30,7 @@ static PetscErrorCode CreatePointLayout(CoarseGrid c, Layout fine, const PetscRe
 
 PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscReal length[], const char kernel[],
                                 CoarseGrid *out) {
-  FluidSpec spec = MobilityTableSpec(run);
+  FluidSpec spec = BoxGridSpec(run);
   PetscReal longest = 0;
   CoarseGrid c;
   PetscFunctionBeginUser;

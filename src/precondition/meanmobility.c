@@ -54,19 +54,18 @@ static PetscBool IsTableNear(MeanMobility m, const PetscReal cells[2]) {
 static void TablePair(MeanMobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
   const Grid g = m->coupling->fluid->grid;
   const PetscReal *X = m->coupling->markers->X;
-  PetscReal d[2], cells[2];
+  PetscReal cells[2];
   PetscInt periods[2]; /* in cells */
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal period = g->hi[dir] - g->lo[dir], apart = X[2 * i + dir] - X[2 * j + dir];
     const PetscInt back = (PetscInt)PetscFloorReal(apart / period + 0.5);
-    d[dir] = apart - period * (PetscReal)back;
     periods[dir] = -back * g->n[dir];
-    cells[dir] = d[dir] / g->h;
+    cells[dir] = (apart - period * (PetscReal)back) / g->h;
   }
   if (IsTableNear(m, cells))
     StencilFourSums(&m->table->green, &m->stencil[2 * i], &m->stencil[2 * j], periods, Mob);
   else {
-    MobilityTableMean(m->table, d, Mob);
+    MeanTableAt(&m->table->mean, cells, Mob);
     Mob[3] = Mob[2];
   }
   for (int q = 0; q < 4; q++) Mob[q] *= m->part;

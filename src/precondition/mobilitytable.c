@@ -22,39 +22,34 @@ static void CorrelateKernels(KernelWeights response, KernelWeights source, int r
   }
 }
 
-/* The mean over places in a cell of the sums over two stencils whose markers are whole cells apart. */
-static void AverageTable(MobilityTable m) {
-  const Kernel *k = m->kernel;
-  const PetscInt nx = 2 * m->mean.size[0] + 1, ny = 2 * m->mean.size[1] + 1, gx = 2 * m->green.size[0] + 1;
+PetscErrorCode MeanTableCreate(const OffsetTable *green, const Kernel *k, OffsetTable *mean) {
+  const PetscInt size[2] = {green->size[0] - LAG, green->size[1] - LAG};
+  const PetscInt nx = 2 * size[0] + 1, ny = 2 * size[1] + 1, gx = 2 * green->size[0] + 1;
   const KernelWeights weights[] = {k->along, k->across}; /* with faces at m + 1, m + 1/2 */
+  PetscReal *line;
+  PetscFunctionBeginUser;
+  PetscCall(OffsetTableCreate(size, mean));
+  PetscCall(PetscMalloc1(gx, &line));
   for (int b = 0; b < OFFSET_COUNT; b++) {
     const int response = b != OFFSET_UU, source = b == OFFSET_VV; /* component */
     PetscReal wx[LAGS], wy[LAGS];
     CorrelateKernels(weights[response], weights[source], response, source, wx);
     CorrelateKernels(weights[!response], weights[!source], !response, !source, wy);
     for (PetscInt j = 0; j < ny; j++) {
-      PetscReal *out = m->mean.value[b] + j * nx;
-      for (PetscInt i = 0; i < gx; i++) m->line[i] = 0;
-      for (PetscInt i = 0; i < nx; i++) out[i] = 0;
+      PetscReal *out = mean->value[b] + j * nx;
+      PetscCall(PetscArrayzero(line, gx));
       for (int q = 0; q < LAGS; q++)
-        for (PetscInt i = 0; wy[q] != 0 && i < gx; i++) m->line[i] += wy[q] * m->green.value[b][(j + q) * gx + i];
+        for (PetscInt i = 0; wy[q] != 0 && i < gx; i++) line[i] += wy[q] * green->value[b][(j + q) * gx + i];
       for (int p = 0; p < LAGS; p++)
-        for (PetscInt i = 0; wx[p] != 0 && i < nx; i++) out[i] += wx[p] * m->line[i + p];
+        for (PetscInt i = 0; wx[p] != 0 && i < nx; i++) out[i] += wx[p] * line[i + p];
     }
   }
-  m->averaged = PETSC_TRUE;
-}
-
-FluidSpec MobilityTableSpec(const FluidSpec *run) {
-  FluidSpec spec = *run;
-  spec.form = FORM_DISTURBANCE;
-  (void)PetscStrncpy(spec.helmholtz, "fftw_tridiagonal", sizeof(spec.helmholtz));
-  (void)PetscStrncpy(spec.poisson, "fftw_tridiagonal", sizeof(spec.poisson));
-  return spec;
+  PetscCall(PetscFree(line));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach, MobilityTable *out) {
-  FluidSpec box = MobilityTableSpec(spec);
+  FluidSpec box = BoxGridSpec(spec);
   MobilityTable m;
   PetscInt size[2];
   PetscFunctionBeginUser;
@@ -66,11 +61,8 @@ PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, 
   PetscCall(FluidCreate(&box, &m->periodic));
   const Grid g = m->periodic->grid;
   for (int d = 0; d < 2; d++) /* room for drift */
-    size[d] = PetscMin(g->n[d] / 2, (PetscInt)(PetscMin(1.1 * reach / g->h, PETSC_MAX_INT / 4)) + 4) + POINTS;
-  PetscCall(OffsetTableCreate(size, &m->mean));
-  for (int d = 0; d < 2; d++) size[d] += LAG;
+    size[d] = PetscMin(g->n[d] / 2, (PetscInt)(PetscMin(1.1 * reach / g->h, PETSC_MAX_INT / 4)) + 4) + POINTS + LAG;
   PetscCall(OffsetTableCreate(size, &m->green));
-  PetscCall(PetscMalloc1(2 * size[0] + 1, &m->line));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,7 +72,6 @@ PetscErrorCode MobilityTableDestroy(MobilityTable *table) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetTableDestroy(&m->mean));
   PetscCall(OffsetTableDestroy(&m->green));
-  PetscCall(PetscFree(m->line));
   PetscCall(FluidDestroy(&m->periodic));
   PetscCall(PetscFree(*table));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -131,7 +122,6 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   PetscFunctionBeginUser;
   if (alpha == m->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   m->alpha = alpha;
-  m->averaged = PETSC_FALSE;
   PetscCall(FluidSetTimeCoefficient(m->periodic, alpha));
   PetscCall(StokesCreate(m->periodic, &stokes));
   PetscCall(DMCreateGlobalVector(g->velocity, &velocity));
@@ -140,6 +130,8 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
     OffsetTableTurn(&m->green);
   else
     PetscCall(UnitResponse(m, stokes, velocity, 1));
+  PetscCall(OffsetTableDestroy(&m->mean));
+  PetscCall(MeanTableCreate(&m->green, m->kernel, &m->mean));
   PetscCall(VecDestroy(&velocity));
   PetscCall(StokesDestroy(&stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -147,22 +139,21 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
 
 /* Lagrange's weights at x, 0 .. POINTS - 1. */
 static void LagrangeWeights(PetscReal x, PetscReal weight[POINTS]) {
+  static const PetscReal product[POINTS] = {-120, 24, -12, 12, -24, 120}; /* of i - j, j != i */
   for (int i = 0; i < POINTS; i++) {
-    weight[i] = 1;
+    weight[i] = 1 / product[i];
     for (int j = 0; j < POINTS; j++)
-      if (j != i) weight[i] *= (x - j) / (i - j);
+      if (j != i) weight[i] *= x - j;
   }
 }
 
-void MobilityTableMean(MobilityTable m, const PetscReal d[2], PetscReal mean[3]) {
-  const OffsetTable *t = &m->mean;
+void MeanTableAt(const OffsetTable *t, const PetscReal cells[2], PetscReal mean[3]) {
   const PetscInt nx = 2 * t->size[0] + 1;
   PetscReal w[2][POINTS];
   PetscInt at[2];
-  if (!m->averaged) AverageTable(m);
   for (int dir = 0; dir < 2; dir++) {
-    const PetscReal most = t->size[dir] - POINTS / 2, cells = d[dir] / m->periodic->grid->h;
-    const PetscReal x = PetscMax(-most, PetscMin(most, cells)) + t->size[dir];
+    const PetscReal most = t->size[dir] - POINTS / 2;
+    const PetscReal x = PetscMax(-most, PetscMin(most, cells[dir])) + t->size[dir];
     at[dir] = (PetscInt)x - POINTS / 2 + 1;
     LagrangeWeights(x - (PetscReal)at[dir], w[dir]);
   }
@@ -176,8 +167,9 @@ void MobilityTableMean(MobilityTable m, const PetscReal d[2], PetscReal mean[3])
 }
 
 void MobilityTableAdd(MobilityTable m, PetscReal scale, const PetscReal d[2], PetscInt rows, PetscReal A[]) {
+  const PetscReal h = m->periodic->grid->h, cells[2] = {d[0] / h, d[1] / h};
   PetscReal mean[3];
-  MobilityTableMean(m, d, mean);
+  MeanTableAt(&m->mean, cells, mean);
   A[0] += scale * mean[0];
   A[1] += scale * mean[2];
   A[rows] += scale * mean[2];

@@ -6,7 +6,7 @@
 
    The solves are collective; every rank has the tables. */
 #pragma once
-#include "layers/stencilsums.h"
+#include "mobility/boxgrid.h"
 #include "fluid/stokes/stokes.h"
 
 typedef struct _p_MobilityTable *MobilityTable;
@@ -15,14 +15,14 @@ struct _p_MobilityTable {
   Fluid periodic;    /* a periodic box of the same cells */
   PetscReal alpha;   /* coefficient of H that the tables are for; negative: none yet */
   OffsetTable green; /* its Green's function, by offsets of faces */
-  OffsetTable mean;  /* of two markers' mobility, by whole cells between them, once asked for */
-  PetscBool averaged;
-  PetscReal *line; /* work */
+  OffsetTable mean;  /* of two markers' mobility, by whole cells between them */
 };
 
-/* MobilityTableSpec - the run's fluid for a preconditioner: by the default solver, which cannot fail, whatever solves
-   the steps. Not collective. */
-PETSC_EXTERN FluidSpec MobilityTableSpec(const FluidSpec *run);
+/* MeanTableCreate - the mean over the places in a cell of the sums over two kernels, by whole cells between them, from
+   the table of a function of offsets. MeanTableAt - its value some cells apart: xx, yy, xy. Beyond the table its
+   border. Not collective. */
+PETSC_EXTERN PetscErrorCode MeanTableCreate(const OffsetTable *green, const Kernel *kernel, OffsetTable *mean);
+PETSC_EXTERN void MeanTableAt(const OffsetTable *mean, const PetscReal cells[2], PetscReal value[3]);
 
 /* MobilityTableCreate - for the grid that spec makes and markers up to `reach` (length) apart. Collective. */
 PETSC_EXTERN PetscErrorCode MobilityTableCreate(const FluidSpec *spec, const Kernel *kernel, PetscReal reach,
@@ -33,9 +33,7 @@ PETSC_EXTERN PetscErrorCode MobilityTableDestroy(MobilityTable *table);
    Collective. */
 PETSC_EXTERN PetscErrorCode MobilityTableSetUp(MobilityTable table, PetscReal alpha);
 
-/* MobilityTableMean - of two markers d (length) apart, velocity per force on the faces: xx, yy, xy. Beyond the table
-   its border. MobilityTableAdd - the mean mobility times scale, added to the two rows and columns of a matrix from A
-   on, whose columns are `rows` numbers apart. Not collective. */
-PETSC_EXTERN void MobilityTableMean(MobilityTable table, const PetscReal d[2], PetscReal mean[3]);
+/* MobilityTableAdd - the mean mobility of two markers d (length) apart, velocity per force on the faces, times scale,
+   added to the two rows and columns of a matrix from A on, whose columns are `rows` numbers apart. Not collective. */
 PETSC_EXTERN void MobilityTableAdd(MobilityTable table, PetscReal scale, const PetscReal d[2], PetscInt rows,
                                    PetscReal A[]);
