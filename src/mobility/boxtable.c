@@ -70,7 +70,7 @@ void BoxTableFunctions(const BoxTable *t, int dir, PetscReal x, PetscReal values
   }
 }
 
-/* Functions f, g of a response and a force that W couples, with the weights of its pairs: `terms` a couple, the others
+/* Functions f, g of a response and a source that W couples, with the weights of its pairs: `terms` a couple, the others
    are zero. */
 typedef struct {
   PetscInt f, g;
@@ -82,41 +82,33 @@ typedef struct {
   PetscReal *weight; /* [count][terms] */
 } Couplings;
 
-/* Between walls: halves f and g, even or odd, of the polynomials of two places each. */
-static void WallCouple(const BoxAxis *a, Couple c, PetscInt pair[], PetscReal weight[]) {
+/* A term of a couple. Between walls of halves f and g, even or odd, of the polynomials of two places each. Over a
+   period from W's Fourier series in the offset, with
+
+       cos(a - b) = cos a cos b + sin a sin b,      sin(a - b) = sin a cos b - cos a sin b. */
+static void CoupleTerm(const BoxAxis *a, Couple c, PetscInt term, PetscInt *pair, PetscReal *weight) {
   const PetscInt n = a->places, half = n / 2, i = c.f % half, j = c.g % half;
-  for (int k = 0; k < 4; k++) {
-    pair[k] = (k / 2 ? n - 1 - i : i) * n + (k % 2 ? n - 1 - j : j);
-    weight[k] = (k / 2 && c.f >= half ? -1 : 1) * (k % 2 && c.g >= half ? -0.5 : 0.5);
-  }
+  const PetscInt m = (c.f + 1) / 2, sine = m && c.f % 2 == 0, other = m && c.g % 2 == 0;
+  const PetscReal angle = 2 * PETSC_PI * ((m * term) % n) / n;
+  *pair = a->wall ? (term / 2 ? n - 1 - i : i) * n + (term % 2 ? n - 1 - j : j) : term;
+  if (a->wall)
+    *weight = (term / 2 && c.f >= half ? -1 : 1) * (term % 2 && c.g >= half ? -0.5 : 0.5);
+  else
+    *weight = (m ? 2.0 : 1.0) / n * (sine == other ? PetscCosReal(angle) : (sine - other) * PetscSinReal(angle));
 }
 
-/* Over a period, from W's Fourier series in the offset, with cos(a - b) = cos a cos b + sin a sin b and sin(a - b) =
-   sin a cos b - cos a sin b. */
-static void PeriodCouple(const BoxAxis *a, PetscInt k, Couple *c, PetscInt pair[], PetscReal weight[]) {
-  const PetscInt n = a->places, m = (k + 3) / 4, kind = k ? (k - 1) % 4 : 0, cosine = m ? 2 * m - 1 : 0;
-  *c = (Couple){cosine + (kind == 1 || kind == 2), cosine + (kind == 1 || kind == 3)};
-  for (PetscInt q = 0; q < n; q++) {
-    const PetscReal angle = 2 * PETSC_PI * ((m * q) % n) / n, factor = (m ? 2.0 : 1.0) / n;
-    pair[q] = q;
-    weight[q] = factor * (kind < 2 ? PetscCosReal(angle) : PetscSinReal(angle)) * (kind == 3 ? -1 : 1);
-  }
-}
-
-static PetscErrorCode MakeCouplings(const BoxAxis *a, Couplings *c) {
-  const PetscInt n = a->places;
+static PetscErrorCode MakeCouplings(const BoxAxis *a, PetscInt functions, Couplings *c) {
+  const PetscInt most = a->wall ? functions * functions : 2 * functions;
   PetscFunctionBeginUser;
-  c->count = a->wall ? n * n : 1 + 4 * a->modes;
-  c->terms = a->wall ? 4 : n;
-  PetscCall(PetscMalloc3(c->count, &c->couple, c->count * c->terms, &c->pair, c->count * c->terms, &c->weight));
-  for (PetscInt k = 0; k < c->count; k++) {
-    PetscInt *pair = c->pair + k * c->terms;
-    PetscReal *weight = c->weight + k * c->terms;
-    c->couple[k] = (Couple){k / n, k % n};
-    if (a->wall)
-      WallCouple(a, c->couple[k], pair, weight);
-    else
-      PeriodCouple(a, k, &c->couple[k], pair, weight);
+  c->count = 0;
+  c->terms = a->wall ? 4 : a->places;
+  PetscCall(PetscMalloc3(most, &c->couple, most * c->terms, &c->pair, most * c->terms, &c->weight));
+  for (PetscInt k = 0; k < functions * functions; k++) {
+    const Couple one = {k / functions, k % functions};
+    PetscInt at = c->count * c->terms;
+    if (!a->wall && (one.f + 1) / 2 != (one.g + 1) / 2) continue;
+    c->couple[c->count++] = one;
+    for (PetscInt q = 0; q < c->terms; q++, at++) CoupleTerm(a, one, q, &c->pair[at], &c->weight[at]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -180,7 +172,7 @@ static PetscErrorCode BoxTableTransform(const BoxTable *t, const PetscReal W[]) 
   PetscReal *line;
   Couplings c[2];
   PetscFunctionBeginUser;
-  for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], &c[dir]));
+  for (int dir = 0; dir < 2; dir++) PetscCall(MakeCouplings(&t->axis[dir], t->functions[dir], &c[dir]));
   PetscCall(PetscMalloc1(ny, &line));
   for (int b = 0; b < 2 * t->parts; b++)
     for (PetscInt p = 0; p < c[0].count; p++) {

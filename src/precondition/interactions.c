@@ -13,7 +13,7 @@ static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], cons
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->count; k++) SharedShapeSources(s, &s->shape[k], U, sigma, &c->answer);
   for (PetscInt v = l->own; v < l->end; v++) { /* forces to the coarse points, P^T F, in the frame of the shape */
-    const CurvePoints *p = &s->weights[s->shape[s->of[v]].weights];
+    const CurvePoints *p = &s->shape[s->of[v]].curve;
     const PetscInt at = 2 * LayoutOffset(coarse, v);
     RigidFitInto(&s->fit[v - l->own], 2, p->n, c->answer.force + 2 * LayoutOffset(l, v), marker);
     PetscCall(DenseProduct(PETSC_FALSE, 2, p->points, p->n, marker, p->to_markers, c->F + at));
@@ -22,7 +22,7 @@ static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], cons
   PetscCall(CoarseGridApply(s->coarse, c->W));
   for (PetscInt v = l->own; v < l->end; v++) { /* less what a vesicle does to itself, to the markers */
     const SharedShape *q = &s->shape[s->of[v]];
-    const CurvePoints *p = &s->weights[q->weights];
+    const CurvePoints *p = &q->curve;
     const PetscInt points = 2 * p->points, at = 2 * LayoutOffset(coarse, v);
     PetscReal *w = c->work + 2 * p->n;
     RigidFitTurn(&s->fit[v - l->own], PETSC_TRUE, p->points, c->W + at, w);

@@ -51,15 +51,17 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* New dense blocks, whose age begins. */
 static PetscErrorCode MakeBlocks(Preconditioner p) {
   const Coupling c = p->unknowns->coupling;
   const Fluid f = c->fluid;
   PetscBool factored;
   PetscFunctionBeginUser;
-  if (p->mobility) PetscCall(MeanMobilitySetUp(p->mobility, f->alpha));
+  PetscCall(MeanMobilitySetUp(p->mobility, f->alpha));
   PetscCall(DenseBlocksFactor(p->blocks, p->mobility, p->solid, f->a0, &factored));
   p->failed = factored ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscArraycpy(p->treading, c->treading, c->membrane->layout->bodies));
+  AgeRenew(&p->age, f->a0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,16 +72,9 @@ void PreconditionerGetMemory(Preconditioner p, PetscReal memory[AGE_MEMORY]) {
 PetscErrorCode PreconditionerSetMemory(Preconditioner p, const PetscReal memory[AGE_MEMORY]) {
   PetscFunctionBeginUser;
   if (!p->blocks || memory[0] <= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  p->age = AgeSetMemory(memory);
   DenseBlocksPlace(p->blocks);
   PetscCall(MakeBlocks(p));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RenewBlocks(Preconditioner p) {
-  PetscFunctionBeginUser;
-  PetscCall(MakeBlocks(p));
-  AgeRenew(&p->age, p->unknowns->coupling->fluid->a0);
+  p->age = AgeSetMemory(memory);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,7 +118,7 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   if (p->shapes) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
   if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
-  if (AreBlocksOver(p)) PetscCall(RenewBlocks(p));
+  if (AreBlocksOver(p)) PetscCall(MakeBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,7 +137,7 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   PetscFunctionBeginUser;
   if (!p->flexible || !p->blocks || !AgeIsFar(&p->age, p->now.applied)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!p->now.graded) AgeShorten(&p->age);
-  PetscCall(RenewBlocks(p));
+  PetscCall(MakeBlocks(p));
   p->now.renewed = p->now.applied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

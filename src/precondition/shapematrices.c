@@ -5,17 +5,6 @@
 #include "layers/singlepairs.h"
 #include "numerics/blas.h"
 
-/* M = h^2 S. */
-static PetscErrorCode AssembleShape(SharedShapes s, const SharedShape *q, PetscReal M[]) {
-  const Coupling c = s->coupling;
-  const PetscInt n = LayoutCount(c->membrane->layout, q->like);
-  const PetscReal h2 = PetscSqr(c->fluid->grid->h);
-  PetscFunctionBeginUser;
-  PetscCall(SelfLayer(&c->mobility->near->set, c->membrane->spectral[q->like], n, q->X, M));
-  for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= h2;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* With viscosity contrast what ContrastMatrix has of a vesicle of this shape, else NULL. */
 static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscReal **motion) {
   const Membrane m = s->coupling->membrane;
@@ -34,16 +23,6 @@ static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscRea
       (*motion)[j * n + i] = (i == j ? 0.5 * (1 + ratio) : 0) - (1 - ratio) * D[i * n + j];
   PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, *motion));
   PetscCall(PetscFree3(D, normal, along));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The weights of n markers and so many points; those of an earlier shape where there are. */
-static PetscErrorCode FindShapeWeights(SharedShapes s, PetscInt n, PetscInt points, PetscInt *which) {
-  PetscFunctionBeginUser;
-  for (*which = 0; *which < s->kinds; (*which)++)
-    if (s->weights[*which].n == n && s->weights[*which].points == points) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscRealloc((size_t)(s->kinds + 1) * sizeof(CurvePoints), &s->weights));
-  PetscCall(CurvePointsCreate(PETSC_FALSE, n, points, &s->weights[s->kinds++]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,10 +49,10 @@ static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
                  points = LayoutCount(s->coarse->layout, q->like);
   const PetscReal h2 = PetscSqr(s->coarse->fluid->grid->h);
   PetscFunctionBeginUser;
-  PetscCall(FindShapeWeights(s, n, points, &q->weights));
+  PetscCall(CurvePointsCreate(PETSC_FALSE, n, points, &q->curve));
   PetscCall(PetscCalloc1(4 * points * points, &q->self));
   PetscCall(PetscMalloc1(2 * points, &q->points));
-  PetscCall(DenseProduct(PETSC_FALSE, 2, points, n, q->X, s->weights[q->weights].to_points, q->points));
+  PetscCall(DenseProduct(PETSC_FALSE, 2, points, n, q->X, q->curve.to_points, q->points));
   for (PetscInt j = 0; j < points; j++)
     for (PetscInt i = 0; i < points; i++) {
       const PetscReal d[2] = {q->points[2 * i] - q->points[2 * j], q->points[2 * i + 1] - q->points[2 * j + 1]};
@@ -114,7 +93,8 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(PetscMalloc1(4 * n * n, &M));
   PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
   PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
-  PetscCall(AssembleShape(s, q, M));
+  PetscCall(SelfLayer(&s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, M));
+  for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
   PetscCall(ShapeMotion(s, q, &motion));
   LawPlace(block.law, q->X);
   PetscCall(DenseBlockFactor(&block, s->a0, &q->treading, M, motion, good));

@@ -17,8 +17,8 @@ typedef struct {
   PackedMatrix inverse; /* 3n x 3n: (r_V, r_s) to (V, sigma); without values: not made */
   PackedMatrix sources; /* 2n x 3n: to their forces F; with viscosity contrast 4n x 3n, to F and their jumps J */
   PetscReal *self;      /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
-  PetscInt weights;     /* number of its interpolation among all */
-  PetscReal *points;    /* [2q] places of its coarse points */
+  CurvePoints curve;    /* its coarse points */
+  PetscReal *points;    /* [2q] their places */
 } SharedShape;
 
 /* What membranes do to the fluid: forces F and, with viscosity contrast (else NULL), jumps J, [2n] of own vesicles. */
@@ -35,8 +35,6 @@ struct _p_SharedShapes {
   PetscInt count;
   size_t room;
   SharedShape *shape;
-  CurvePoints *weights; /* between n markers and q coarse points, one for each n and q */
-  PetscInt kinds;       /* number of weights */
   PetscInt *of;         /* [vesicles] shape of each, -1: none yet */
   PetscInt *order;      /* [own vesicles] by shape */
   RigidFit *fit;        /* [own vesicles] in its shape's frame */

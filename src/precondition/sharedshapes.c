@@ -6,27 +6,20 @@
 #define TOLERANCE 0.03 /* of a vesicle's distance from its shape */
 #define STEP_RATIO 1.1 /* of two steps whose matrices are shared */
 
-/* Work space of the vesicles' columns and of one vesicle. */
-static PetscErrorCode CreateShapeWork(SharedShapes s) {
-  const Layout l = s->coupling->membrane->layout;
-  PetscInt most = 0;
-  PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
-  PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
-  PetscCall(PetscMalloc2(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to));
-  for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SharedShapesCreate(const FluidSpec *spec, Coupling c, SharedShapes *out) {
   const Membrane m = c->membrane;
+  const Layout l = m->layout;
+  PetscInt most = 0;
   SharedShapes s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
   s->coupling = c;
-  PetscCall(CoarseGridCreate(spec, m->layout, m->L0, c->markers->kernel->name, &s->coarse));
-  PetscCall(CreateShapeWork(s));
+  for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
+  PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
+  PetscCall(PetscMalloc2(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to));
+  for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
+  PetscCall(CoarseGridCreate(spec, l, m->L0, c->markers->kernel->name, &s->coarse));
   if (s->coarse) PetscCall(InteractionsCreate(s, &s->cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -37,6 +30,7 @@ static PetscErrorCode FreeShapeMatrices(SharedShape *q) {
   PetscCall(PetscFree(q->sources.value));
   PetscCall(PetscFree(q->self));
   PetscCall(PetscFree(q->points));
+  PetscCall(CurvePointsDestroy(&q->curve));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,8 +47,6 @@ PetscErrorCode SharedShapesDestroy(SharedShapes *shapes) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < s->count; k++) PetscCall(FreeShape(&s->shape[k]));
   PetscCall(PetscFree(s->shape));
-  for (PetscInt k = 0; k < s->kinds; k++) PetscCall(CurvePointsDestroy(&s->weights[k]));
-  PetscCall(PetscFree(s->weights));
   PetscCall(InteractionsDestroy(&s->cross));
   PetscCall(CoarseGridDestroy(&s->coarse));
   PetscCall(PetscFree4(s->of, s->order, s->fit, s->X));
@@ -144,25 +136,19 @@ static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading
 /* Which vesicle takes which shape, told to all ranks; those that none takes any more are dropped. */
 static PetscErrorCode TellShapes(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
-  PetscInt *to, kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->count, &to));
   for (PetscInt v = 0; v < l->bodies; v++)
     if (v < l->own || v >= l->end) s->of[v] = -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->of, (PetscMPIInt)l->bodies, MPIU_INT, MPI_MAX, l->comm));
-  for (PetscInt k = 0; k < s->count; k++) to[k] = -1;
-  for (PetscInt v = 0; v < l->bodies; v++) to[s->of[v]] = 0;
-  for (PetscInt k = 0; k < s->count; k++) {
-    if (to[k] < 0) {
-      PetscCall(FreeShape(&s->shape[k]));
-      continue;
-    }
-    s->shape[kept] = s->shape[k];
-    to[k] = kept++;
+  for (PetscInt k = s->count - 1; k >= 0; k--) {
+    PetscBool taken = PETSC_FALSE;
+    for (PetscInt v = 0; v < l->bodies; v++)
+      if (s->of[v] == k) taken = PETSC_TRUE;
+    if (taken) continue;
+    PetscCall(FreeShape(&s->shape[k]));
+    PetscCall(PetscArraymove(s->shape + k, s->shape + k + 1, --s->count - k));
+    for (PetscInt v = 0; v < l->bodies; v++) s->of[v] -= s->of[v] > k;
   }
-  s->count = kept;
-  for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = to[s->of[v]];
-  PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -194,15 +180,12 @@ static PetscErrorCode ChooseShapes(SharedShapes s) {
 static void SortByShape(SharedShapes s) {
   const Layout l = s->coupling->membrane->layout;
   PetscInt at = 0;
-  for (PetscInt k = 0; k < s->count; k++) s->shape[k].begin = s->shape[k].end = 0;
-  for (PetscInt v = l->own; v < l->end; v++) s->shape[s->of[v]].end++;
   for (PetscInt k = 0; k < s->count; k++) {
-    SharedShape *q = &s->shape[k];
-    const PetscInt own = q->end;
-    q->begin = q->end = at;
-    at += own;
+    s->shape[k].begin = at;
+    for (PetscInt v = l->own; v < l->end; v++)
+      if (s->of[v] == k) s->order[at++] = v;
+    s->shape[k].end = at;
   }
-  for (PetscInt v = l->own; v < l->end; v++) s->order[s->shape[s->of[v]].end++] = v;
 }
 
 /* Matrices of the shapes that own vesicles take, for the a0 in force. */
