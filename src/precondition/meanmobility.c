@@ -144,24 +144,18 @@ PetscErrorCode MeanMobilityAssemble(MeanMobility m, const MarkerRange *rows, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MeanMobilityAddNear(Coupling c, PetscBool box, const MarkerRange *rows, const MarkerRange *columns,
-                                   PetscMPIInt root, PetscReal Mob[]) {
+PetscErrorCode MeanMobilityOnRoot(MeanMobility m, const MarkerRange *rows, const MarkerRange *columns, PetscMPIInt root,
+                                  PetscReal Mob[]) {
+  const Coupling c = m->coupling;
   const Layout l = c->bodies->layout;
+  const PetscBool box = m->box ? PETSC_FALSE : PETSC_TRUE; /* C has its box part */
   PetscMPIInt size;
   PetscFunctionBeginUser;
+  PetscCall(MeanMobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
   if (c->mobility->near)
     PetscCall(NearFieldAddBetween(c->mobility->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
   PetscCall(PetscMPIIntCast(4 * rows->n * columns->n, &size));
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, root, l->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode MeanMobilityOnRoot(MeanMobility m, const MarkerRange *rows, const MarkerRange *columns, PetscMPIInt root,
-                                  PetscReal Mob[]) {
-  const Layout l = m->coupling->bodies->layout;
-  PetscFunctionBeginUser;
-  PetscCall(MeanMobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
-  PetscCall(MeanMobilityAddNear(m->coupling, m->box ? PETSC_FALSE : PETSC_TRUE, rows, columns, root, Mob));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

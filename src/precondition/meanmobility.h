@@ -47,9 +47,6 @@ PETSC_EXTERN PetscErrorCode MeanMobilityAssemble(MeanMobility mobility, const Ma
                                                  PetscReal Mob[]);
 
 /* MeanMobilityOnRoot - Mob + h^2 C, C the near field with its box part: the sum of all ranks' parts on rank root, what
-   is left elsewhere has no meaning. MeanMobilityAddNear - from ranks' parts of Mob, box: C has its box part.
-   Collective. */
+   is left elsewhere has no meaning. Collective. */
 PETSC_EXTERN PetscErrorCode MeanMobilityOnRoot(MeanMobility mobility, const MarkerRange *rows,
                                                const MarkerRange *columns, PetscMPIInt root, PetscReal Mob[]);
-PETSC_EXTERN PetscErrorCode MeanMobilityAddNear(Coupling coupling, PetscBool box, const MarkerRange *rows,
-                                                const MarkerRange *columns, PetscMPIInt root, PetscReal Mob[]);

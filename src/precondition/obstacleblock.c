@@ -3,8 +3,6 @@
 #include "numerics/blas.h"
 #include "precondition/obstaclemodes.h"
 #include "numerics/symmetric.h"
-#include "fluid/stokes/stokes.h"
-#include "markers/streamresponse.h"
 
 struct _p_ObstacleBlock {
   const FluidSpec *spec; /* borrowed */
@@ -66,35 +64,30 @@ static PetscBool IsBySolves(ObstacleBlock b) {
   return PETSC_FALSE;
 }
 
-/* Mob = E A^-1 E^T of the grid itself, on root, zero elsewhere: a solve for each column. */
-static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal Mob[]) {
+/* A h^2 of the grid's own mobility with its near field, on root: the mobility applied to a unit force for each column.
+ */
+static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal A[]) {
   const Coupling c = b->coupling;
   const Layout l = b->obstacles->layout;
   const PetscInt n = 2 * l->M, own = BodiesFirstObstacle(c->bodies);
-  const PetscReal part = MobilityGridPart(c->mobility, c->fluid->alpha);
-  const PetscScalar *U;
-  PetscScalar *F;
-  Stokes stokes;
-  Vec force, velocity;
+  PetscScalar *a;
+  Vec F, G, U;
   PetscFunctionBeginUser;
-  PetscCall(StokesCreate(c->fluid, &stokes));
-  PetscCall(VecDuplicate(c->X, &force));
-  PetscCall(VecDuplicate(c->X, &velocity));
-  PetscCall(VecSet(force, 0));
-  PetscCall(PetscArrayzero(Mob, n * n));
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &F));
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &U));
+  PetscCall(LayoutCreateVec(c->membrane->layout, 2, &G));
   for (PetscInt j = 0; j < n; j++) {
-    const PetscInt at = j - 2 * l->first;
-    PetscCall(VecGetArray(force, &F));
-    for (PetscInt k = 0; k < 2 * l->n; k++) F[own + k] = k == at ? 1 : 0;
-    PetscCall(VecRestoreArray(force, &F));
-    PetscCall(MarkersRespond(c->markers, StokesStream(stokes), NULL, part, force, velocity));
-    PetscCall(VecGetArrayRead(velocity, &U));
-    PetscCall(LayoutToRank(l, b->root, 2, U + own, l->rank == b->root ? Mob + j * n : b->all));
-    PetscCall(VecRestoreArrayRead(velocity, &U));
+    PetscCall(VecGetArray(F, &a));
+    for (PetscInt k = 0; k < 2 * l->n; k++) a[own + k] = k == j - 2 * l->first ? -PetscSqr(c->fluid->grid->h) : 0;
+    PetscCall(VecRestoreArray(F, &a));
+    PetscCall(MobilityApply(c->mobility, F, G, U));
+    PetscCall(VecGetArray(U, &a));
+    PetscCall(LayoutToRank(l, b->root, 2, a + own, l->rank == b->root ? A + j * n : b->all));
+    PetscCall(VecRestoreArray(U, &a));
   }
-  PetscCall(VecDestroy(&force));
-  PetscCall(VecDestroy(&velocity));
-  PetscCall(StokesDestroy(&stokes));
+  PetscCall(VecDestroy(&F));
+  PetscCall(VecDestroy(&G));
+  PetscCall(VecDestroy(&U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,10 +100,9 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
   const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
   MeanMobility mobility;
   PetscFunctionBeginUser;
-  if (IsBySolves(b)) {
+  if (IsBySolves(b))
     PetscCall(MobilityBySolves(b, A));
-    PetscCall(MeanMobilityAddNear(b->coupling, PETSC_TRUE, &solid, &solid, b->root, A));
-  } else {
+  else {
     PetscCall(MeanMobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
     PetscCall(MeanMobilitySetUp(mobility, b->coupling->fluid->alpha));
     PetscCall(MeanMobilityOnRoot(mobility, &solid, &solid, b->root, A));
