@@ -56,13 +56,17 @@ void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], 
   }
 }
 
-void LawTarget(MembraneLaw law, PetscReal a0, const PetscScalar Xhat[], PetscScalar g[]) {
+PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g) {
   const Membrane m = law->membrane;
-  PetscScalar *hat = m->work.stretching;
+  const PetscScalar *X;
+  PetscScalar *hat = m->work.stretching, *d;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(Xhat, &X));
+  PetscCall(VecGetArray(g, &d));
   for (PetscInt v = law->vesicle; v < law->end; v++) {
     const PetscInt at = LawOffset(law, v);
     const PetscReal ds = m->ds[v];
-    MembraneEdges(m, v, Xhat + 2 * at, hat);
+    MembraneEdges(m, v, X + 2 * at, hat);
     for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++) {
       PetscReal star2 = 0, gap = 0;
       for (int c = 0; c < 2; c++) {
@@ -70,9 +74,12 @@ void LawTarget(MembraneLaw law, PetscReal a0, const PetscScalar Xhat[], PetscSca
         star2 += e * e;
         gap += e * (hat[2 * k + c] - e);
       }
-      g[at + k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
+      d[at + k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
     }
   }
+  PetscCall(VecRestoreArray(g, &d));
+  PetscCall(VecRestoreArrayRead(Xhat, &X));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]) {
@@ -83,16 +90,22 @@ void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar 
   }
 }
 
-PetscErrorCode LawLargest(MembraneLaw law, const PetscScalar V[], const PetscScalar g[], PetscReal *largest) {
+PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec g, PetscReal *largest) {
+  const PetscScalar *v, *aim;
   PetscScalar *d;
+  PetscReal own = 0;
   PetscFunctionBeginUser;
-  *largest = 0;
+  PetscCall(VecGetArrayRead(V, &v));
+  PetscCall(VecGetArrayRead(g, &aim));
   PetscCall(PetscMalloc1(law->n, &d));
-  LawRows(law, V, NULL, d);
-  for (PetscInt k = 0; k < law->n; k++) d[k] -= g[k];
+  LawRows(law, v, NULL, d);
+  for (PetscInt k = 0; k < law->n; k++) d[k] -= aim[k];
   LawScale(law, 1, PETSC_FALSE, d);
-  for (PetscInt k = 0; k < law->n; k++) *largest = PetscMax(*largest, PetscAbsReal(d[k]));
+  for (PetscInt k = 0; k < law->n; k++) own = PetscMax(own, PetscAbsReal(d[k]));
   PetscCall(PetscFree(d));
+  PetscCall(VecRestoreArrayRead(g, &aim));
+  PetscCall(VecRestoreArrayRead(V, &v));
+  PetscCallMPI(MPI_Allreduce(&own, largest, 1, MPIU_REAL, MPI_MAX, law->membrane->layout->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,13 +38,12 @@ PETSC_EXTERN void LawRows(MembraneLaw law, const PetscScalar V[], const PetscSca
 
 /* LawTarget - g += what gives the edges of the new markers Xhat + U/a0 their length ds, linearised:
    e*.(D U)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], ehat = D Xhat. */
-PETSC_EXTERN void LawTarget(MembraneLaw law, PetscReal a0, const PetscScalar Xhat[], PetscScalar g[]);
+PETSC_EXTERN PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g);
 
-/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - the largest
-   residual of the rows for V, times h^2/ds: a surface divergence (1/time). */
+/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - of a law of the
+   own vesicles, the largest residual of the rows for V, times h^2/ds: a surface divergence (1/time). Collective. */
 PETSC_EXTERN void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]);
-PETSC_EXTERN PetscErrorCode LawLargest(MembraneLaw law, const PetscScalar V[], const PetscScalar g[],
-                                       PetscReal *largest);
+PETSC_EXTERN PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec g, PetscReal *largest);
 
 /* LawBlock - D[n][2n] = Dm/h^2 of one vesicle's n edges and markers, a row behind the other; its transpose is also F
    over h^2 as it follows from sigma. LawSchur - the law's part of a dense problem of all its vesicles: C[n][n], a

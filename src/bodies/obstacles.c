@@ -1,6 +1,7 @@
 #include "bodies/obstacles.h"
 #include "curve/contacts.h"
 #include "kernel/kernel.h"
+#include "scene/properties.h"
 
 /* N of one curve where it has been placed, and its length. */
 static PetscErrorCode Normals(Obstacles o, PetscInt b, PetscReal *length) {
@@ -156,21 +157,15 @@ static PetscErrorCode CheckOthers(Obstacles o, const CurveRoom *room, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstaclesCheck(Obstacles o, Grid g, PetscReal t, char message[PETVES_MAX_MESSAGE]) {
-  CurveRoom room;
+PetscErrorCode ObstaclesCheck(Obstacles o, Scene scene, PetscReal t, char message[PETVES_MAX_MESSAGE]) {
+  const CurveRoom room = SceneRoom(scene);
   PetscReal *X;
   PetscFunctionBeginUser;
   message[0] = 0;
   if (!o->moving) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int d = 0; d < 2; d++) {
-    room.box[2 * d] = g->lo[d];
-    room.box[2 * d + 1] = g->hi[d];
-    room.wall[d] = g->wall[d];
-    room.period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
-  }
   PetscCall(PetscMalloc1(2 * o->layout->M, &X));
   ObstaclesCurves(o, t, X);
-  PetscCall(CheckWalls(o, &room, g->h, X, message));
+  PetscCall(CheckWalls(o, &room, FluidSpecCellSize(&scene->fluid), X, message));
   if (!*message) PetscCall(CheckOthers(o, &room, X, message));
   PetscCall(PetscFree(X));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,7 +10,6 @@
 #pragma once
 #include "bodies/motion.h"
 #include "curve/kind.h"
-#include "fluid/grid/grid.h"
 #include "markers/layout.h"
 #include "scene/scene.h"
 
@@ -46,7 +45,7 @@ PETSC_EXTERN PetscErrorCode ObstaclesPlace(Obstacles obstacles, PetscReal t);
    them, down to which their forces are right: KERNEL_FOLDED_CELLS cells and SCENE_LEAST_GAP edges. ObstaclesCheckStride
    - whether no body steps over what it would run into: in the time dt up to t it goes by at most half its width.
    message is empty, or says which do not. Not collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Grid grid, PetscReal t,
+PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Scene scene, PetscReal t,
                                            char message[PETVES_MAX_MESSAGE]);
 PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, PetscReal t, PetscReal dt,
                                                  char message[PETVES_MAX_MESSAGE]);

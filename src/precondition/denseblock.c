@@ -18,37 +18,28 @@ PetscErrorCode DenseBlockDestroy(DenseBlock *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of vesicle v alone: q->K = M D^T, N = M K/(h^2 a0) of the forces' K, and without motion the labels' own one,
-   (v/a0) d/dt. M is symmetric. */
-static PetscErrorCode AssembleVesicle(DenseBlock *q, PetscReal a0, PetscInt v, PetscReal treading,
-                                      const PetscReal Mob[]) {
-  const Membrane m = q->law->membrane;
-  const PetscInt rows = 2 * q->law->n, n = LayoutCount(m->layout, v), own = m->layout->start[v] - q->law->first;
+/* Of vesicle v alone: q->K = M D^T, N = M K/(h^2 a0) of the forces' K. M is symmetric. */
+static PetscErrorCode AssembleVesicle(DenseBlock *q, PetscReal a0, PetscInt v, const PetscReal Mob[]) {
+  const Layout l = q->law->membrane->layout;
+  const PetscInt rows = 2 * q->law->n, n = LayoutCount(l, v), own = l->start[v] - q->law->first;
   const DenseView M = {Mob + 2 * own * rows, rows, 2 * n, rows};
-  PetscReal *unit, *first, *D, *K, *N = q->N + 2 * own * rows;
+  PetscReal *D, *K, *N = q->N + 2 * own * rows;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(2 * n, &unit, 2 * n, &first, 2 * n * n, &D, 4 * n * n, &K));
+  PetscCall(PetscCalloc2(2 * n * n, &D, 4 * n * n, &K));
   PetscCall(LawBlock(q->law, v, D));
   PetscCall(DenseProductWithin(PETSC_FALSE, M, (DenseView){D, 2 * n, n, 2 * n}, 0, q->K + own * rows, rows));
   PetscCall(ForcesDense(q->forces, v, 1 / (q->law->h2 * a0), K));
   PetscCall(DenseProductWithin(PETSC_FALSE, M, (DenseView){K, 2 * n, 2 * n, 2 * n}, 0, N, rows));
-  if (treading != 0) {
-    unit[0] = 1;
-    MembraneLabelDerivative(m, v, treading / a0, unit, first);
-    DenseAddCirculant(n, first, rows, N + 2 * own);
-  }
-  PetscCall(PetscFree4(unit, first, D, K));
+  PetscCall(PetscFree2(D, K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DenseBlockFactor(DenseBlock *q, PetscReal a0, const PetscReal treading[], const PetscReal Mob[],
-                                const PetscReal motion[], PetscBool *factored) {
+PetscErrorCode DenseBlockFactor(DenseBlock *q, PetscReal a0, const PetscReal Mob[], const PetscReal motion[],
+                                PetscBool *factored) {
   const PetscInt n = q->law->n, rows = 2 * n;
   PetscFunctionBeginUser;
-  for (PetscInt v = q->law->vesicle; v < q->law->end; v++)
-    PetscCall(AssembleVesicle(q, a0, v, motion ? 0 : treading[v - q->law->vesicle], Mob));
-  for (PetscInt c = 0; c < rows && !motion; c++) q->N[c * rows + c] += 1;
-  for (PetscInt c = 0; c < rows && motion; c++)
+  for (PetscInt v = q->law->vesicle; v < q->law->end; v++) PetscCall(AssembleVesicle(q, a0, v, Mob));
+  for (PetscInt c = 0; c < rows; c++)
     for (PetscInt k = 0; k < rows; k++) q->N[c * rows + k] += motion[k * rows + c];
   PetscCall(DenseFactor(rows, q->N, q->pivot_N, factored));
   if (!*factored) PetscFunctionReturn(PETSC_SUCCESS);

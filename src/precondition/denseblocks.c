@@ -62,14 +62,12 @@ PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the velocities do with viscosity contrast, of free space (ContrastMatrix): made for a block's owner, NULL
-   without contrast. Collective where the block is for all. */
+/* What stands with V in its rows, transposed, in free space (ContrastMatrix): made for a block's owner. Collective
+   where the block is for all. */
 static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first, PetscInt n, PetscReal **motion) {
   const Layout l = b->coupling->membrane->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
-  *motion = NULL;
-  if (!b->coupling->mobility->contrast) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMPIIntCast(4 * n * n, &size));
   PetscCall(PetscCalloc1(4 * n * n, motion));
   PetscCall(ContrastMatrix(b->coupling, PETSC_FALSE, a0, first, n, *motion));
@@ -143,7 +141,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
         PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, law->first, law->n, Mob));
       PetscCall(AssembleMotion(b, a0, law->first, law->n, &motion));
     }
-    PetscCall(DenseBlockFactor(&b->block[k], a0, b->coupling->treading + law->vesicle, Mob, motion, &good));
+    PetscCall(DenseBlockFactor(&b->block[k], a0, Mob, motion, &good));
     if (!b->together) PetscCall(PetscFree(motion));
   }
   PetscCall(PetscFree(motion));

@@ -163,7 +163,7 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   p->now.applied++;
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &V));
-  sigma = V + UnknownsTension(u);
+  sigma = V + UnknownsEdges(u);
   UnknownsScale(u, PETSC_TRUE, V);
   if (CouplingHasBodies(u->coupling)) {
     if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));

@@ -5,23 +5,21 @@
 #include "layers/singlepairs.h"
 #include "numerics/blas.h"
 
-/* With viscosity contrast what ContrastMatrix has of a vesicle of this shape, else NULL. */
-static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscReal **motion) {
+/* What ContrastMatrix has of a vesicle of this shape, motion[2n][2n]. */
+static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscReal motion[]) {
   const Membrane m = s->coupling->membrane;
   const PetscInt n = 2 * LayoutCount(m->layout, q->like);
+  const PetscReal weight = MobilityWeight(s->coupling->mobility, q->like), jump = 2 - 2 * weight; /* 1 - ratio */
   PetscReal *D, *normal, *along;
   PetscFunctionBeginUser;
-  *motion = NULL;
-  if (!s->coupling->mobility->contrast) PetscFunctionReturn(PETSC_SUCCESS);
-  const PetscReal ratio = s->coupling->mobility->contrast->ratio[q->like];
-  PetscCall(PetscMalloc1(n * n, motion));
-  PetscCall(PetscMalloc3(n * n, &D, n, &normal, n / 2, &along));
-  PetscCall(DoubleGeometry(m->spectral[q->like], n / 2, q->X, normal, along));
-  PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, normal, D));
+  PetscCall(PetscCalloc3(n * n, &D, n, &normal, n / 2, &along));
+  if (jump != 0) {
+    PetscCall(DoubleGeometry(m->spectral[q->like], n / 2, q->X, normal, along));
+    PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, normal, D));
+  }
   for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++)
-      (*motion)[j * n + i] = (i == j ? 0.5 * (1 + ratio) : 0) - (1 - ratio) * D[i * n + j];
-  PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, *motion));
+    for (PetscInt i = 0; i < n; i++) motion[j * n + i] = (i == j ? weight : 0) - jump * D[i * n + j];
+  PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, motion));
   PetscCall(PetscFree3(D, normal, along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -90,22 +88,21 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscReal *M, *motion, *V, *sigma;
   DenseBlock block;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(4 * n * n, &M));
+  PetscCall(PetscMalloc2(4 * n * n, &M, 4 * n * n, &motion));
   PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
   PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
   PetscCall(SelfLayer(&s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
-  PetscCall(ShapeMotion(s, q, &motion));
+  PetscCall(ShapeMotion(s, q, motion));
   LawPlace(block.law, q->X);
-  PetscCall(DenseBlockFactor(&block, s->a0, &q->treading, M, motion, good));
-  PetscCall(PetscFree(motion));
+  PetscCall(DenseBlockFactor(&block, s->a0, M, motion, good));
   for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;
   if (*good) PetscCall(DenseBlockSolve(&block, all, V, sigma));
   PetscCall(StoreShape(s, q, block.law, V, sigma));
   if (s->coarse) PetscCall(MakeShapePoints(s, q));
   PetscCall(DenseBlockDestroy(&block));
-  PetscCall(PetscFree(M));
+  PetscCall(PetscFree2(M, motion));
   PetscCall(PetscFree2(V, sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

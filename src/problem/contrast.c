@@ -23,7 +23,7 @@ PetscErrorCode ContrastMatrix(Coupling c, PetscBool lattice, PetscReal a0, Petsc
   const Layout l = c->membrane->layout;
   const PetscInt begin = LayoutBody(l, first), end = LayoutBody(l, first + n - 1) + 1;
   PetscFunctionBeginUser;
-  PetscCall(DoubleLayerAdd(c->mobility->contrast, -1, lattice, first, n, out));
+  if (c->mobility->contrast) PetscCall(DoubleLayerAdd(c->mobility->contrast, -1, lattice, first, n, out));
   for (PetscInt v = PetscMax(begin, l->own); v < PetscMin(end, l->end); v++)
     for (PetscInt k = 2 * (l->start[v] - first); k < 2 * (l->start[v + 1] - first); k++)
       out[k * 2 * n + k] += MobilityWeight(c->mobility, v);

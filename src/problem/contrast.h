@@ -1,7 +1,9 @@
-/* The block of viscosity contrast in the equations of a step, for preconditioners (docs/contrast.md): the rows of the
-   vesicles' velocities have B G, the motion of the labels in it,
+/* The block of the vesicles' motion in the equations of a step, for preconditioners (docs/contrast.md): the rows of
+   their velocities have B G, the motion of the labels in it,
 
-       B G = (1 + ratio)/2 G - C_D (1 - ratio) G,      G = V + (treading/a0) dV/dt. */
+       B G = (1 + ratio)/2 G - C_D (1 - ratio) G,      G = V + (treading/a0) dV/dt,
+
+   B = I without viscosity contrast. */
 #pragma once
 #include "problem/coupling.h"
 

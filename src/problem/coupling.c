@@ -96,8 +96,8 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
-  const PetscScalar *x, *y;
+PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, Vec F) {
+  const PetscScalar *x, *y, *s;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
@@ -106,6 +106,11 @@ PetscErrorCode CouplingKnownForce(Coupling c, Vec Y, Vec X, Vec F) {
   PetscCall(VecGetArray(F, &f));
   PetscCall(ForcesRate(c->forces, 1, y, f));
   PetscCall(ForcesKnown(c->forces, 1, x, f));
+  if (sigma) {
+    PetscCall(VecGetArrayRead(sigma, &s));
+    LawForce(c->law, 1, s, f);
+    PetscCall(VecRestoreArrayRead(sigma, &s));
+  }
   PetscCall(VecRestoreArray(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecRestoreArrayRead(Y, &y));

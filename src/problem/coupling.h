@@ -69,9 +69,9 @@ static inline PetscReal CouplingBending(Coupling coupling) {
 PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
-/* CouplingKnownForce - F = K Y + k, minus all forces but the tension's at the markers Y, linearised at the markers X
-   placed (bodies/force.h); F is zero behind the vesicles' part. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingKnownForce(Coupling coupling, Vec Y, Vec X, Vec F);
+/* CouplingStepForce - F = K Y + k + Dm^T sigma, minus the forces at the markers Y, linearised at the markers X placed
+   (bodies/force.h), and the law's of sigma (NULL: without); F is zero behind the vesicles' part. Collective. */
+PETSC_EXTERN PetscErrorCode CouplingStepForce(Coupling coupling, Vec Y, Vec X, Vec sigma, Vec F);
 
 /* CouplingTread - U += alpha V dX/dt, the velocity of markers by the labels' own motion. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);

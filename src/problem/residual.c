@@ -9,7 +9,7 @@ static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
   PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, f));
-  LawForce(c->law, 1, x + UnknownsTension(u), f);
+  LawForce(c->law, 1, x + UnknownsEdges(u), f);
   PetscCall(PetscArraycpy(f + u->velocity, x + u->velocity, u->solid));
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -44,20 +44,20 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   const Layout l = c->membrane->layout;
-  const PetscInt n = u->velocity, tension = UnknownsTension(u);
+  const PetscInt n = u->velocity, edges = UnknownsEdges(u);
   const PetscScalar *G;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(y, tension));
+  PetscCall(PetscArrayzero(y, edges));
   PetscCall(VecGetArrayRead(s->G, &G));
   for (PetscInt v = l->own; v < l->end; v++) /* (3) (1 + ratio)/2 G */
     for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k++)
       y[k] = MobilityWeight(c->mobility, v) * G[k];
   PetscCall(VecRestoreArrayRead(s->G, &G));
-  PetscCall(Subtract(s->U, tension, y)); /* (3), (5) - U - k */
-  if (q) PetscCall(Subtract(q->k, tension, y));
+  PetscCall(Subtract(s->U, edges, y)); /* (3), (5) - U - k */
+  if (q) PetscCall(Subtract(q->k, edges, y));
   if (c->bodies->obstacles) ObstaclesRows(c->bodies->obstacles, x + n, y + n); /* (5) beta N N^T F */
-  LawRows(c->law, x, x + tension, y + tension);                                /* (4) Dm V/h^2 - g */
-  if (q) PetscCall(Subtract(q->g, u->tension, y + tension));
+  LawRows(c->law, x, x + edges, y + edges);                                    /* (4) Dm V/h^2 - g */
+  if (q) PetscCall(Subtract(q->g, u->edges, y + edges));
   if (c->area) AreaRowReplace(c->area, q ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
   UnknownsScale(u, PETSC_FALSE, y);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -108,7 +108,7 @@ PetscErrorCode ReducedAdd(Reduced s, Vec added, Vec x, Vec residual) {
 
 PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   const Coupling c = u->coupling;
-  const PetscInt n = UnknownsTension(u) + u->tension;
+  const PetscInt n = UnknownsEdges(u) + u->edges;
   Reduced s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));

@@ -18,7 +18,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   u->length = Length(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
-  u->tension = LawNumbers(coupling->law);
+  u->edges = LawNumbers(coupling->law);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -31,7 +31,7 @@ PetscErrorCode UnknownsDestroy(Unknowns *unknowns) {
 PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
   PetscFunctionBeginUser;
   PetscCall(VecCreate(u->coupling->fluid->grid->comm, x));
-  PetscCall(VecSetSizes(*x, UnknownsTension(u) + u->tension, PETSC_DETERMINE));
+  PetscCall(VecSetSizes(*x, UnknownsEdges(u) + u->edges, PETSC_DETERMINE));
   PetscCall(VecSetType(*x, VECSTANDARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -39,7 +39,7 @@ PetscErrorCode UnknownsCreateVec(Unknowns u, Vec *x) {
 /* Copy the parts into x, or (out) those of x out of it; a part that is NULL is left out. */
 static PetscErrorCode UnknownsCopy(Unknowns u, PetscBool out, Vec V, Vec solid, Vec sigma, Vec x) {
   const Vec part[] = {V, solid, sigma};
-  const PetscInt n[] = {u->velocity, u->solid, u->tension};
+  const PetscInt n[] = {u->velocity, u->solid, u->edges};
   PetscScalar *all, *one;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(x, &all));
@@ -84,5 +84,5 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
       y[k] = inverse ? y[k] / velocity : y[k] * velocity;
   }
   if (o) ObstaclesScale(o, weight, inverse, y + u->velocity);
-  LawScale(u->coupling->law, weight, inverse, y + UnknownsTension(u));
+  LawScale(u->coupling->law, weight, inverse, y + UnknownsEdges(u));
 }

@@ -1,14 +1,15 @@
 /* The unknowns of the reduced coupled problem and the norm of its residuals (docs/solver.md, Reduced unknowns). A
    rank's part of the vector is V [2n], the solved part of its own markers' velocity, F [2w], the fluid's force on its
-   own obstacles' markers, and sigma [n], the tension of its own edges. Residuals are laid out alike. */
+   own obstacles' markers, and sigma [n], the unknowns of the membranes' law at its own edges (bodies/law.h), the
+   tension. Residuals are laid out alike. */
 #pragma once
 #include "problem/coupling.h"
 
 typedef struct _p_Unknowns *Unknowns;
 struct _p_Unknowns {
-  Coupling coupling;                 /* borrowed */
-  PetscReal length;                  /* l, the length of the residuals' factors: 2 R0 of the smallest vesicle */
-  PetscInt velocity, solid, tension; /* own numbers of each kind */
+  Coupling coupling;               /* borrowed */
+  PetscReal length;                /* l, the length of the residuals' factors: 2 R0 of the smallest vesicle */
+  PetscInt velocity, solid, edges; /* own numbers of each kind */
 };
 
 /* UnknownsCreate - the layout of the unknowns of these bodies. Collective. */
@@ -36,7 +37,7 @@ PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec 
    collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
-/* UnknownsTension - index at which the tensions start in a rank's part. Not collective. */
-static inline PetscInt UnknownsTension(Unknowns u) {
+/* UnknownsEdges - index at which the law's unknowns start in a rank's part. Not collective. */
+static inline PetscInt UnknownsEdges(Unknowns u) {
   return u->velocity + u->solid;
 }

@@ -8,28 +8,15 @@
 #define FAR 1.1    /* times as far from its extrapolation as from where it began: its motion has stopped */
 #define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
 
-/* The rows of the membranes' law aim at the lengths of edges; the background's own stretching is in g already. */
-static PetscErrorCode LengthTarget(Scheme s, Coupled *d, PetscReal a0) {
-  const PetscScalar *hat;
-  PetscScalar *g;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(d->Xhat, &hat));
-  PetscCall(VecGetArray(s->g, &g));
-  LawTarget(s->coupling->law, a0, hat, g);
-  PetscCall(VecRestoreArray(s->g, &g));
-  PetscCall(VecRestoreArrayRead(d->Xhat, &hat));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Vectors of the states that the step goes on from. */
 #define STATES(s, which)                                                                                               \
   (const Vec[]) {                                                                                                      \
     (s)->state.which, (s)->old[0].which, (s)->old[1].which, (s)->old[2].which, (s)->old[3].which, (s)->old[4].which    \
   }
 
-/* The tension of the last two states, extrapolated, pulls along the new edges (docs/membrane.md, The tension turns with
-   the membrane). next.sigma is used for it. */
-static PetscErrorCode TurnTension(Scheme s, Coupled *d) {
+/* The unknowns of the membranes' law, extrapolated from the last two states, turn with the new edges (docs/membrane.md,
+   The tension turns with the membrane). next.sigma is used for them. */
+static PetscErrorCode TurnEdges(Scheme s, Coupled *d) {
   History *h = &d->history;
   const PetscInt count = PetscMin(2, h->solved);
   PetscReal weight[BDF_STATES];
@@ -82,7 +69,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(ForcingClear(f));
   PetscCall(Past(s, d, b));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  PetscCall(CouplingKnownForce(s->coupling, d->Y, d->Xstar, d->force));
+  PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->force));
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
   PetscCall(VecCopy(s->background, d->moved));
   PetscCall(CouplingTread(s->coupling, 1, d->Y, d->moved));
@@ -94,7 +81,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution extrapolated: tension and V = U - (labels' speed) dX/dt - u_inf. */
+/* The solution extrapolated: sigma and V = U - (labels' speed) dX/dt - u_inf. */
 static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
   History *h = &d->history;
@@ -161,17 +148,11 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
 
 /* What the forces of the step, which are spread at X*, and the jump do to a sheared channel. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
-  const PetscScalar *sigma;
-  PetscScalar *F;
+  const State *n = &d->next;
   PetscFunctionBeginUser;
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingKnownForce(s->coupling, d->next.X, d->Xstar, d->Y));
-  PetscCall(VecGetArrayRead(d->next.sigma, &sigma));
-  PetscCall(VecGetArray(d->Y, &F));
-  LawForce(s->coupling->law, 1, sigma, F);
-  PetscCall(VecRestoreArray(d->Y, &F));
-  PetscCall(VecRestoreArrayRead(d->next.sigma, &sigma));
-  PetscCall(StressMeasure(s, d->next.w, d->next.p, d->Y, d->next.X, d->next.U));
+  PetscCall(CouplingStepForce(s->coupling, n->X, d->Xstar, n->sigma, d->Y));
+  PetscCall(StressMeasure(s, n->w, n->p, d->Y, n->X, n->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -236,9 +217,9 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->scene->scheme.length_target) PetscCall(LengthTarget(s, d, b.a0));
+  if (s->scene->scheme.length_target) PetscCall(LawTarget(s->coupling->law, b.a0, d->Xhat, s->g));
   if (s->coupling->area) PetscCall(AreaRowPlace(s->coupling->area, b.a0, d->Xstar, d->Xhat, s->background));
-  PetscCall(TurnTension(s, d));
+  PetscCall(TurnEdges(s, d));
   PetscCall(RightHandSides(s, d, &b));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);

@@ -42,7 +42,7 @@ static PetscErrorCode FindContact(Scheme s, const PetscScalar X[], PetscReal rea
   const PetscInt own[2] = {l->first, l->first + l->n};
   PetscReal period[2];
   PetscFunctionBeginUser;
-  SchemePeriods(s, period);
+  FluidSpecPeriods(&s->scene->fluid, period);
   PetscCall(PairsWithin(l->M, X, own, period, reach, IsContact, &search));
   PetscCall(PetscArraycpy(pair, search.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);

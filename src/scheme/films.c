@@ -19,18 +19,6 @@ typedef struct {
   CurveGap before, after;
 } Drained;
 
-static CurveRoom BoxOfCurves(Scheme s) {
-  const Grid g = s->fluid->grid;
-  CurveRoom room;
-  SchemePeriods(s, room.period);
-  for (int d = 0; d < 2; d++) {
-    room.box[2 * d] = g->lo[d];
-    room.box[2 * d + 1] = g->hi[d];
-    room.wall[d] = g->wall[d] && !g->free ? PETSC_TRUE : PETSC_FALSE;
-  }
-  return room;
-}
-
 static PetscReal Thin(Scheme s) {
   PetscReal ds = 0;
   if (!s->coupling->mobility->near) return s->fluid->grid->h;
@@ -48,7 +36,7 @@ typedef struct {
 /* Fill in a view of the curves X[2(M + W)]. The set points into the view, which must not be moved in memory. */
 static void SeeCurves(Scheme s, const PetscReal X[], View *view) {
   const Bodies b = s->coupling->bodies;
-  view->room = BoxOfCurves(s);
+  view->room = SceneRoom(s->scene);
   view->own[0] = s->membrane->layout->own;
   view->own[1] = s->membrane->layout->end;
   view->set = (CurveSet){b->layout->bodies, b->vesicles,       b->layout->start, b->kind, X,
@@ -226,7 +214,7 @@ static PetscErrorCode LeastGap(Scheme s, const PetscScalar X[], const CurveGap *
 
 PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   const Layout l = s->membrane->layout;
-  const CurveRoom room = BoxOfCurves(s);
+  const CurveRoom room = SceneRoom(s->scene);
   PetscMPIInt vesicles;
   CurveGap thinnest;
   PetscInt side;

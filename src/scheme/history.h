@@ -7,7 +7,7 @@
 typedef struct {
   PetscInt n;                      /* states whose markers are carried: 1 to BDF_MOST */
   PetscInt solved;                 /* states that a step has led to, at most BDF_STATES; the first state of a run has no
-                                      velocity and no tension */
+                                      velocity and no sigma */
   PetscReal step[BDF_STATES];      /* the step to be made, the step before it, and so on (time) */
   PetscReal *treading;             /* [vesicles] V, speed of the labels (1/time) */
   PetscBool moving;                /* the labels of a vesicle turn */

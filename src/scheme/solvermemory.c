@@ -53,7 +53,7 @@ static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
   char message[PETVES_MAX_MESSAGE];
   PetscFunctionBeginUser;
   if (!OlderBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->fluid->grid, memory[0], message));
+  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->scene, memory[0], message));
   PetscCheck(memory[0] >= 0 && memory[0] <= LATEST * (s->state.t + s->state.dt) && !*message, s->scene->comm,
              PETSC_ERR_USER_INPUT, "-restart %s: its solver's memory is of time %g; allowed: a checkpoint.h5 of petves",
              s->scene->output.restart, (double)memory[0]);

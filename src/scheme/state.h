@@ -16,7 +16,7 @@ typedef struct {
   Forcing forcing; /* the forcing from which p follows, and w where there is no flow; empty where steps make both */
   PetscReal a0;    /* the time coefficient of the solve from forcing to w and p */
   StateFields fields;
-  Vec sigma; /* tension, an edge vector */
+  Vec sigma; /* unknowns of the membranes' law (bodies/law.h), the tension; an edge vector */
   Vec X;     /* markers, a marker vector */
   Vec U;     /* markers' velocity, background included */
   Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */

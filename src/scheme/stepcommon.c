@@ -49,11 +49,6 @@ PetscErrorCode SchemeReturn(Scheme s, PetscBool advanced) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void SchemePeriods(Scheme s, PetscReal period[2]) {
-  const Grid g = s->fluid->grid;
-  for (int d = 0; d < 2; d++) period[d] = g->wall[d] ? 0 : g->hi[d] - g->lo[d];
-}
-
 PetscErrorCode SchemeCurves(Scheme s, PetscReal t, Vec X) {
   PetscFunctionBeginUser;
   PetscCall(LayoutGatherVec(s->membrane->layout, X, s->work_all));
@@ -99,7 +94,7 @@ static PetscErrorCode CheckBodies(Scheme s, PetscReal t) {
   const char *advice = "a -time_end before that, or other velocities";
   PetscFunctionBeginUser;
   if (!o || !o->moving) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesCheck(o, s->fluid->grid, t, s->report.failure));
+  PetscCall(ObstaclesCheck(o, s->scene, t, s->report.failure));
   if (!*s->report.failure) {
     advice = "a smaller -time_step";
     PetscCall(ObstaclesCheckStride(o, t, s->state.dt, s->report.failure));
@@ -127,23 +122,9 @@ PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treadi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest residual of the rows of the membranes' law. */
-static PetscErrorCode MeasureSurfaceDivergence(Scheme s, Vec V) {
-  const PetscScalar *v, *g;
-  PetscReal largest;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(V, &v));
-  PetscCall(VecGetArrayRead(s->g, &g));
-  PetscCall(LawLargest(s->coupling->law, v, g, &largest));
-  PetscCall(VecRestoreArrayRead(s->g, &g));
-  PetscCall(VecRestoreArrayRead(V, &v));
-  PetscCallMPI(MPI_Allreduce(&largest, &s->report.surface_div_max, 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec V, Vec U) {
   PetscFunctionBeginUser;
-  PetscCall(MeasureSurfaceDivergence(s, V));
+  PetscCall(LawLargest(s->coupling->law, V, s->g, &s->report.surface_div_max));
   if (U == V)
     PetscCall(VecAXPY(U, 1, s->background));
   else

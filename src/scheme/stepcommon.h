@@ -148,9 +148,7 @@ PETSC_EXTERN PetscErrorCode SchemeCurves(Scheme scheme, PetscReal t, Vec X);
 PETSC_EXTERN PetscErrorCode SchemeNamePair(Scheme scheme, PetscInt v, PetscInt w, const char same[], size_t length,
                                            char text[]);
 
-/* SchemePeriods - the box's length in x and y (length), 0 where there are walls. SchemeIsSmooth - whether membranes are
-   curves by their markers, not polygons. Not collective. */
-PETSC_EXTERN void SchemePeriods(Scheme scheme, PetscReal period[2]);
+/* SchemeIsSmooth - whether membranes are curves by their markers, not polygons. Not collective. */
 PETSC_EXTERN PetscBool SchemeIsSmooth(Scheme scheme);
 
 /* SchemeAdvise - step, time and what to try, behind what is wrong in report.failure. Not collective. */
