@@ -13,7 +13,7 @@ PetscErrorCode LawCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end
   const PetscInt *start = m->layout->start;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(law));
-  **law = (struct _p_MembraneLaw){m, h * h, vesicle, end, start[vesicle], start[end] - start[vesicle], NULL};
+  **law = (struct _p_MembraneLaw){m, h * h, vesicle, end, start[vesicle], start[end] - start[vesicle]};
   PetscCall(PetscMalloc1(2 * (*law)->n, &(*law)->tau));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -21,7 +21,17 @@ PetscErrorCode LawCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end
 PetscErrorCode LawDestroy(MembraneLaw *law) {
   PetscFunctionBeginUser;
   if (*law) PetscCall(PetscFree((*law)->tau));
+  if (*law) PetscCall(PetscFree3((*law)->ratio, (*law)->z, (*law)->speed));
   PetscCall(PetscFree(*law));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawAimAreas(MembraneLaw law, const PetscReal ratio[]) {
+  const PetscInt vesicles = law->end - law->vesicle;
+  PetscFunctionBeginUser;
+  /* ratio is not NULL on ranks without vesicles either */
+  PetscCall(PetscMalloc3(vesicles + 1, &law->ratio, 2 * law->n, &law->z, vesicles, &law->speed));
+  for (PetscInt k = 0; k < vesicles; k++) law->ratio[k] = ratio ? ratio[law->vesicle + k] : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,10 +153,55 @@ PetscErrorCode LawSchur(MembraneLaw law, const PetscReal K[], PetscReal C[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LawRestore(MembraneLaw law, PetscInt v, PetscBool area, PetscScalar X[], PetscReal *error) {
-  const PetscReal tolerance = area ? EDGE_TOLERANCE : EDGE_TOLERANCE_WITHOUT_AREA;
+PetscErrorCode LawTargetAreas(MembraneLaw law, PetscReal a0, Vec Xstar, Vec Xhat, Vec background) {
+  const Membrane m = law->membrane;
+  const PetscScalar *star, *hat, *u;
   PetscFunctionBeginUser;
-  PetscCall(MembraneRestoreEdges(law->membrane, v, tolerance, X, error));
-  if (*error == 0 && area) PetscCall(MembraneRestoreLength(law->membrane, v, LENGTH_TOLERANCE, X));
+  PetscCall(VecGetArrayRead(Xstar, &star));
+  PetscCall(VecGetArrayRead(Xhat, &hat));
+  PetscCall(VecGetArrayRead(background, &u));
+  for (PetscInt v = law->vesicle; v < law->end; v++) {
+    const PetscInt at = 2 * LawOffset(law, v), n = 2 * LayoutCount(m->layout, v);
+    PetscReal *z = law->z + at, size = 0, speed = 0;
+    Measures measures;
+    MembraneMeasure(m, v, star + at, &measures);
+    MembraneAreaGradient(m, v, star + at, z);
+    for (PetscInt k = 0; k < n; k++) size += PetscSqr(z[k]);
+    size = PetscSqrtReal(size);
+    for (PetscInt k = 0; k < n; k++) {
+      z[k] /= size;
+      speed += z[k] * (a0 * (star[at + k] - hat[at + k]) - u[at + k]);
+    }
+    law->speed[v - law->vesicle] = speed + a0 * (m->A0[v] - measures.area) / size;
+  }
+  PetscCall(VecRestoreArrayRead(background, &u));
+  PetscCall(VecRestoreArrayRead(Xhat, &hat));
+  PetscCall(VecRestoreArrayRead(Xstar, &star));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void LawReplaceAreas(MembraneLaw law, PetscBool aimed, const PetscScalar V[], PetscScalar y[]) {
+  for (PetscInt v = law->vesicle; v < law->end && law->ratio; v++) {
+    const PetscInt at = 2 * LawOffset(law, v), n = 2 * LayoutCount(law->membrane->layout, v);
+    const PetscReal *z = law->z + at;
+    PetscReal along = 0, off = aimed ? -law->speed[v - law->vesicle] : 0;
+    for (PetscInt k = 0; k < n; k++) {
+      along += z[k] * y[at + k];
+      off += z[k] * V[at + k];
+    }
+    for (PetscInt k = 0; k < n; k++) y[at + k] += (law->ratio[v - law->vesicle] * off - along) * z[k];
+  }
+}
+
+PetscErrorCode LawRestore(MembraneLaw law, PetscInt v, PetscBool lengths, PetscScalar X[], PetscReal *shift,
+                          PetscReal *error) {
+  const Membrane m = law->membrane;
+  const PetscReal tolerance = law->ratio ? EDGE_TOLERANCE : EDGE_TOLERANCE_WITHOUT_AREA;
+  PetscFunctionBeginUser;
+  *error = 0;
+  *shift = law->ratio ? MembraneRestoreArea(m, v, X) : 0;
+  if (!lengths || PetscAbsReal(*shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MembraneRestoreEdges(m, v, tolerance, X, error));
+  if (*error == 0 && law->ratio) PetscCall(MembraneRestoreLength(m, v, LENGTH_TOLERANCE, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

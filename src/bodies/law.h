@@ -6,6 +6,13 @@
        F = Dm^T sigma        minus the force on the markers
        Dm V/h^2 = g          the rows, h the size of the grid's cells, V the markers' solved velocity.
 
+   Where steps aim at the vesicles' first areas (docs/membrane.md, The area target), the part of a vesicle's equation of
+   motion r = 0 along the gradient z of its area, |z| = 1 over all its markers, gives way to z.V = s,
+
+       r := r - z (z.r) + ratio z (z.V - s),      ratio that of the viscosities, 1 without contrast.
+
+   Next to nothing is lost: a pressure, a force along z, moves nothing in a fluid that keeps its volume.
+
    A law is that of the vesicles vesicle .. end - 1. Arrays are of these vesicles: [2n] of their n markers, [n] of their
    edges, LawNumbers unknowns and rows. Nothing crosses ranks. */
 #pragma once
@@ -18,10 +25,20 @@ struct _p_MembraneLaw {
   PetscInt vesicle, end;
   PetscInt first, n; /* its markers */
   PetscReal *tau;    /* [2n] */
+  PetscReal *ratio;  /* [its vesicles]; NULL without an area target, */
+  PetscReal *z;      /* [2n] */
+  PetscReal *speed;  /* [its vesicles] and s (length/time) */
 };
 
 PETSC_EXTERN PetscErrorCode LawCreate(Membrane membrane, PetscReal h, PetscInt vesicle, PetscInt end, MembraneLaw *law);
 PETSC_EXTERN PetscErrorCode LawDestroy(MembraneLaw *law);
+
+/* LawAimAreas - steps aim at areas from here on; ratio[vesicles of all], NULL: all 1. LawAimsAreas - whether they do.
+ */
+PETSC_EXTERN PetscErrorCode LawAimAreas(MembraneLaw law, const PetscReal ratio[]);
+static inline PetscBool LawAimsAreas(MembraneLaw law) {
+  return law->ratio ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* LawNumbers - how many unknowns and rows there are. */
 static inline PetscInt LawNumbers(MembraneLaw law) {
@@ -37,8 +54,14 @@ PETSC_EXTERN void LawForce(MembraneLaw law, PetscReal alpha, const PetscScalar s
 PETSC_EXTERN void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], PetscScalar d[]);
 
 /* LawTarget - g += what gives the edges of the new markers Xhat + U/a0 their length ds, linearised:
-   e*.(D U)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], ehat = D Xhat. */
+   e*.(D U)_k = a0 [(ds^2 - |e*|^2)/2 - e*.(ehat - e*)], ehat = D Xhat. LawTargetAreas - z, and s by which the new
+   markers have the first areas A0: grad A.(Xhat + (background + V)/a0 - X*) = A0 - A(X*). */
 PETSC_EXTERN PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g);
+PETSC_EXTERN PetscErrorCode LawTargetAreas(MembraneLaw law, PetscReal a0, Vec Xstar, Vec Xhat, Vec background);
+
+/* LawReplaceAreas - in y[2n], the residual of the equation of motion at V, its part along z; aimed false: with s = 0,
+   for a product with the operator. Nothing without an area target. */
+PETSC_EXTERN void LawReplaceAreas(MembraneLaw law, PetscBool aimed, const PetscScalar V[], PetscScalar y[]);
 
 /* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - of a law of the
    own vesicles, the largest residual of the rows for V, times h^2/ds: a surface divergence (1/time). Collective. */
@@ -52,8 +75,9 @@ PETSC_EXTERN PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec g, PetscReal 
 PETSC_EXTERN PetscErrorCode LawBlock(MembraneLaw law, PetscInt vesicle, PetscReal D[]);
 PETSC_EXTERN PetscErrorCode LawSchur(MembraneLaw law, const PetscReal K[], PetscReal C[]);
 
-/* LawRestore - after a step, what the linearised rows have left of one own vesicle's edges is taken away
-   (MembraneRestoreEdges), or where that cannot be, of its length. area: the vesicle's area has been restored. error:
-   the largest relative error of an edge that was corrected; 0 when none was. */
-PETSC_EXTERN PetscErrorCode LawRestore(MembraneLaw law, PetscInt vesicle, PetscBool area, PetscScalar X[],
-                                       PetscReal *error);
+/* LawRestore - take away what linearised targets have left in the markers X of one vesicle after a step: of its area by
+   a shift along the normals, and (lengths) of its edges, or where that cannot be, of its length. A shift by half an
+   edge has lost the shape, and correcting edges would find another one. shift: that of the area (length); error: the
+   largest relative error of an edge that was corrected; 0 when none was. */
+PETSC_EXTERN PetscErrorCode LawRestore(MembraneLaw law, PetscInt vesicle, PetscBool lengths, PetscScalar X[],
+                                       PetscReal *shift, PetscReal *error);

@@ -212,7 +212,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
   PetscCall(ForcesCreate(c->bodies, fluid->grid, setting->scene, &c->forces));
-  if (setting->area_target) PetscCall(AreaRowCreate(m, setting->mobility.ratio, &c->area));
+  if (setting->area_target) PetscCall(LawAimAreas(c->law, setting->mobility.ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,7 +241,6 @@ PetscErrorCode CouplingDestroy(Coupling *coupling) {
   Coupling c = *coupling;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AreaRowDestroy(&c->area));
   PetscCall(ForcesDestroy(&c->forces));
   PetscCall(MobilityDestroy(&c->mobility));
   PetscCall(BodiesDestroy(&c->bodies));

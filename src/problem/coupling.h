@@ -2,7 +2,6 @@
    the momentum equation. CouplingPlace comes first in every step; all else is at the markers placed. Ranks know all
    markers and own the rows of their own bodies. */
 #pragma once
-#include "bodies/arearow.h"
 #include "bodies/forcelist.h"
 #include "bodies/law.h"
 #include "mobility/mobility.h"
@@ -15,7 +14,6 @@ struct _p_Coupling {
   Mobility mobility;   /* of the markers of all bodies */
   Markers markers;     /* those of the mobility, borrowed */
   Forces forces;       /* on the membranes */
-  AreaRow area;        /* NULL without area target */
   MembraneLaw law;     /* of the own vesicles */
   PetscReal *treading; /* [vesicles] speed of the labels in which the step is made (1/time) */
   Vec X;               /* markers of all bodies */

@@ -58,7 +58,7 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   if (c->bodies->obstacles) ObstaclesRows(c->bodies->obstacles, x + n, y + n); /* (5) beta N N^T F */
   LawRows(c->law, x, x + edges, y + edges);                                    /* (4) Dm V/h^2 - g */
   if (q) PetscCall(Subtract(q->g, u->edges, y + edges));
-  if (c->area) AreaRowReplace(c->area, q ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
+  LawReplaceAreas(c->law, q ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
   UnknownsScale(u, PETSC_FALSE, y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

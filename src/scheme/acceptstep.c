@@ -26,41 +26,29 @@ static PetscErrorCode WarnOfEdges(Scheme s, Coupled *d, const Restored *r) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What linearised targets leave of one vesicle's area and lengths, largest in steps that do not resolve the motion. The
-   old markers stay: X* and Xhat then go along the constraints and do not carry on what was corrected. A shift by half
-   an edge has lost the shape, and correcting edges would find another one. */
-static PetscErrorCode RestoreVesicle(Scheme s, PetscInt v, PetscScalar X[], Restored *r) {
-  const Membrane m = s->membrane;
-  const PetscBool area = s->coupling->area ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal error, shift = 0;
-  PetscFunctionBeginUser;
-  if (area) shift = MembraneRestoreArea(m, v, X);
-  r->most = PetscMax(r->most, shift);
-  r->least = PetscMin(r->least, shift);
-  if (!s->scene->scheme.length_target || PetscAbsReal(shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LawRestore(s->coupling->law, v, area, X, &error));
-  if (error > r->error) {
-    r->error = error;
-    r->who = v;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Each owner its vesicles. */
+/* Each owner its vesicles. The old markers stay: X* and Xhat then go along the constraints and do not carry on what was
+   corrected. */
 static PetscErrorCode RestoreMarkers(Scheme s, Coupled *d) {
   const Layout l = s->membrane->layout;
   PetscScalar *X;
-  PetscReal largest[3];
+  PetscReal largest[3], shift, error;
   Restored r = {0};
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(s->state.X, &X));
-  for (PetscInt v = l->own; v < l->end; v++) PetscCall(RestoreVesicle(s, v, X + 2 * LayoutOffset(l, v), &r));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    PetscCall(
+        LawRestore(s->coupling->law, v, s->scene->scheme.length_target, X + 2 * LayoutOffset(l, v), &shift, &error));
+    r.most = PetscMax(r.most, shift);
+    r.least = PetscMin(r.least, shift);
+    if (error > r.error) r.who = v;
+    r.error = PetscMax(r.error, error);
+  }
   PetscCall(VecRestoreArray(s->state.X, &X));
   largest[0] = r.most;
   largest[1] = -r.least;
   largest[2] = r.error;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 3, MPIU_REAL, MPI_MAX, l->comm));
-  const PetscReal shift = largest[0] >= largest[1] ? largest[0] : -largest[1];
+  shift = largest[0] >= largest[1] ? largest[0] : -largest[1];
   if (PetscAbsReal(shift) > PetscAbsReal(s->report.area_shift)) s->report.area_shift = shift;
   if (largest[2] >= EDGE_WARNING && !d->warned) PetscCall(WarnOfEdges(s, d, &r));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -218,7 +218,8 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
   if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LawTarget(s->coupling->law, b.a0, d->Xhat, s->g));
-  if (s->coupling->area) PetscCall(AreaRowPlace(s->coupling->area, b.a0, d->Xstar, d->Xhat, s->background));
+  if (LawAimsAreas(s->coupling->law))
+    PetscCall(LawTargetAreas(s->coupling->law, b.a0, d->Xstar, d->Xhat, s->background));
   PetscCall(TurnEdges(s, d));
   PetscCall(RightHandSides(s, d, &b));
   *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;

@@ -28,7 +28,7 @@ static PetscErrorCode Begin(Coupling c, Direct *d) {
                                 [PART_F] = 2 * M,
                                 [PART_SOLID] = 2 * (c->bodies->layout->M - M),
                                 [PART_JUMP] = c->mobility->contrast ? 2 * M : 0,
-                                [PART_AREA] = c->area ? c->membrane->layout->bodies : 0,
+                                [PART_AREA] = LawAimsAreas(c->law) ? c->membrane->layout->bodies : 0,
                                 [PART_MEAN] = DirectMeans(d)};
   for (int k = 0; k < PARTS; k++)
     d->first[k + 1] = d->first[k] + (k <= FIELD_P ? d->grid->columns[k] * d->grid->rows[k] : size[k]);
@@ -116,8 +116,8 @@ static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
       PetscCall(DirectAdd(d, F + r, V + c, force[r]));
       if (!d->c->mobility->contrast) PetscCall(DirectAdd(d, V + r, V + c, turned[r]));
     }
-    if (d->c->area) PetscCall(DirectAdd(d, V + c, area, d->c->area->z[2 * first + c]));
-    if (d->c->area) PetscCall(DirectAdd(d, area, V + c, d->c->area->z[2 * first + c]));
+    if (LawAimsAreas(d->c->law)) PetscCall(DirectAdd(d, V + c, area, d->c->law->z[2 * first + c]));
+    if (LawAimsAreas(d->c->law)) PetscCall(DirectAdd(d, area, V + c, d->c->law->z[2 * first + c]));
     unit[c] = 0;
   }
   PetscCall(PetscFree4(unit, D, force, turned));
@@ -240,7 +240,7 @@ static PetscErrorCode RightHandSide(const Direct *d, const CoupledProblem *q, Ve
   PetscCall(Take(q->g, 0, V / 2, b + first[PART_SIGMA]));
   PetscCall(Take(q->k, 0, V, b + first[PART_V]));
   PetscCall(Take(q->k, V, first[PART_JUMP] - first[PART_SOLID], b + first[PART_SOLID]));
-  for (PetscInt v = first[PART_AREA]; v < first[PART_MEAN]; v++) b[v] = d->c->area->speed[v - first[PART_AREA]];
+  for (PetscInt v = first[PART_AREA]; v < first[PART_MEAN]; v++) b[v] = d->c->law->speed[v - first[PART_AREA]];
   for (PetscInt f = 0; f < DirectMeans(d); f++)
     b[first[PART_MEAN] + f] = known->f->mean[f] * d->grid->n[0] * d->grid->n[1];
   PetscCall(VecRestoreArray(rhs, &b));
