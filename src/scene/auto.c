@@ -4,8 +4,7 @@
 #include "scene/auto.h"
 #include "curve/contacts.h"
 #include "numerics/spectral.h"
-#include "scene/autodomain.h"
-#include "scene/autogrid.h"
+#include "scene/checks.h"
 #include "scene/properties.h"
 #include "scene/vesicles.h"
 
@@ -239,17 +238,16 @@ static const Setting settings[AUTO_SETTINGS] = {
   {"-domain_bc_y", AUTO_FIRST, .suggest = SceneSuggestBoundaryY},
   {"-domain_box", AUTO_DOMAIN, .suggest = SceneSuggestBox},
   {"-domain_cells", AUTO_DOMAIN, .suggest = SceneSuggestCells}};
-/* clang-format on */
 
 static PetscErrorCode AutoCheckWanted(Scene s) {
-  const PetscReal wanted = s->scheme.wanted;
-  PetscFunctionBeginUser;
-  PetscCheck(wanted >= 1e-4 && wanted <= 0.1, s->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: outside of what was measured; allowed: 0, or 1e-4 to 0.1", (double)wanted);
-  PetscCheck(!SceneIsProjection(s), s->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: with -scheme_type %s; allowed: coupled", (double)wanted, s->scheme.type);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const SceneRule rules[] = {
+    {s->scheme.wanted < 1e-4 || s->scheme.wanted > 0.1,
+     "-scheme_auto {-scheme_auto}: outside of what was measured; allowed: 0, or 1e-4 to 0.1"},
+    {SceneIsProjection(s),
+     "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"}};
+  return REFUSE(s, rules);
 }
+/* clang-format on */
 
 PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
   PetscFunctionBeginUser;

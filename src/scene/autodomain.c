@@ -1,5 +1,5 @@
-#include "scene/autodomain.h"
-#include "scene/autogrid.h"
+/* -scheme_auto: boundaries, box and grid, where they are not given (docs/settings.md). */
+#include "scene/auto.h"
 #include "scene/checks.h"
 #include "scene/properties.h"
 #include "scene/vesicles.h"
@@ -162,6 +162,7 @@ static PetscReal GridLargestCell(Scene s, const Extent *e) {
          (finer * PetscMax(LEAST_CELLS, SceneCellsFor(SceneAutoFluid(s, e->large), s->scheme.wanted / 2, PETSC_TRUE)));
 }
 
+/* clang-format off */
 PetscErrorCode SceneSuggestCells(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal *box = s->domain.box.v;
   const PetscBool free = FluidSpecIsFree(&s->fluid), by_images = !free && !SceneGiven(s, "-domain_box") && BoxIsOpen(s);
@@ -177,17 +178,15 @@ PetscErrorCode SceneSuggestCells(Draft s, char value[AUTO_TEXT], char why[AUTO_T
   PetscCall(ExtentMeasure(s, &e));
   const PetscReal h = GridLargestCell(s, &e);
   const PetscReal across = PetscCeilReal(PetscMax(box[1] - box[0], box[3] - box[2]) / h * (1 - 1e-9));
-  PetscCheck(!by_images || across <= MOST_BOX, s->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: a box so large that its images leave half of it takes %g cells across; allowed: "
-             "-domain_bc_x free -domain_bc_y free, a -domain_box, or a larger error",
-             (double)s->scheme.wanted, (double)across);
-  PetscCheck(SceneSquareCells(box, h, cells), s->comm, PETSC_ERR_USER_INPUT,
-             "-scheme_auto %g: no square cells of %.3g, for the smallest vesicle, fill -domain_box %g,%g,%g,%g with up "
-             "to %d in a direction; allowed: -domain_cells, or a box whose sides are in a simple ratio",
-             (double)s->scheme.wanted, (double)h, (double)box[0], (double)box[1], (double)box[2], (double)box[3],
-             SCENE_MOST_ACROSS);
+  const SceneRule rules[] = {
+    {by_images && across > MOST_BOX,
+     "-scheme_auto {-scheme_auto}: a box so large that its images leave half of it takes %g cells across; allowed: -domain_bc_x free -domain_bc_y free, a -domain_box, or a larger error", {across}},
+    {!SceneSquareCells(box, h, cells),
+     "-scheme_auto {-scheme_auto}: no square cells of %.3g, for the smallest vesicle, fill -domain_box {-domain_box} with up to %.0f in a direction; allowed: -domain_cells, or a box whose sides are in a simple ratio", {h, SCENE_MOST_ACROSS}}};
+  PetscCall(REFUSE(s, rules));
   if (!free && e.gap > 0 && e.gap < PETSC_MAX_REAL)
     (void)SceneWallCells(SceneAutoFluid(s, e.large), box, h, e.small, e.gap, s->scheme.wanted / 2, cells);
   PetscCall(PetscSNPrintf(value, AUTO_TEXT, "%" PetscInt_FMT ",%" PetscInt_FMT, cells[0], cells[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */

@@ -1,5 +1,5 @@
-#include "scene/autogrid.h"
-#include "scene/inertia.h"
+/* -scheme_auto: what grids leave, by what was measured (docs/speed_accuracy/calibration.csv). */
+#include "scene/auto.h"
 #include "scene/properties.h"
 
 /* Worst errors over vesicles in shear, in a channel, between four walls, in pairs and with viscosity contrast, by R0/h;

@@ -9,7 +9,7 @@
 typedef struct {
   int broken;
   const char *message;
-  PetscReal number[6];
+  PetscReal number[7];
 } SceneRule;
 
 /* SceneRefuse - stop with the message of the first rule that is broken. SCENE_REFUSE_IF - one rule. SceneCheckList -
@@ -29,6 +29,12 @@ PETSC_EXTERN PetscErrorCode SceneCheckList(Scene scene, const char name[], Petsc
 PETSC_EXTERN PetscErrorCode SceneCheck(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckCells(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckBodies(Scene scene);
+
+/* SceneChooseInertia (inertia.c) - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the
+   scene: rate R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles),
+   the model that -fluid_inertia auto stands for, and the warning that goes with it. Collective; stops with the user's
+   message when the model does not fit the scene. */
+PETSC_EXTERN PetscErrorCode SceneChooseInertia(Draft scene);
 
 /* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them (obstaclechecks.c);
    finds what is around each. Collective; stops with the user's message. */

@@ -1,4 +1,4 @@
-#include "scene/inertia.h"
+#include "scene/checks.h"
 #include "scene/properties.h"
 
 /* Reynolds number below which a channel or a strain flow is quasi-steady by default. */
@@ -59,6 +59,7 @@ static PetscBool FlowIsSeamless(Scene scene, int *dir) {
 /* Steps over the membrane's own time from which on no step was seen to succeed: rounding is all that is left. */
 #define MOST_STIFF 1e10
 
+/* clang-format off */
 /* Check that the step is not too long for the membrane's own time. The membrane is resisted by viscosity, or, without
    the exact near field, by the inertia of a step. */
 static PetscErrorCode SceneCheckStiffness(Scene scene) {
@@ -66,27 +67,11 @@ static PetscErrorCode SceneCheckStiffness(Scene scene) {
   const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal resists = viscous ? scene->fluid.nu : PetscMax(scene->fluid.nu, inertia);
   const PetscReal own = resists * R0 * R0 * R0 / scene->membrane.bending;
-  PetscFunctionBeginUser;
-  if (R0 == 0 || scene->membrane.bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(dt < MOST_STIFF * own, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_bending %g: with -fluid_viscosity %g the membrane's own time is %.3g, -time_step %g is %.1g of "
-             "them; allowed: up to %g of them, by less bending, more viscosity or a smaller step",
-             (double)scene->membrane.bending, (double)scene->fluid.nu, (double)own, (double)dt, (double)(dt / own),
-             MOST_STIFF);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return SCENE_REFUSE_IF(scene, R0 > 0 && scene->membrane.bending > 0 && dt >= MOST_STIFF * own,
+    "-vesicle_bending %g: with -fluid_viscosity %g the membrane's own time is %.3g, -time_step %g is %.1g of them; allowed: up to %g of them, by less bending, more viscosity or a smaller step",
+    {scene->membrane.bending, scene->fluid.nu, own, dt, dt / own, MOST_STIFF});
 }
-
-/* A copy beyond a periodic boundary moves as its vesicle does. Where the flow there is another one, the copies of a
-   packing, which fills the box, run into vesicles at once. */
-static PetscErrorCode SceneCheckPacking(Scene scene, PetscBool seamless, int dir) {
-  PetscFunctionBeginUser;
-  PetscCheck(
-      seamless || scene->vesicles.packing == 0, scene->comm, PETSC_ERR_USER_INPUT,
-      "-vesicle_packing %g: the background flow is not periodic in %c, so vesicles and the copies of others across "
-      "that boundary would run into each other; allowed: -domain_bc_%c wall",
-      (double)scene->vesicles.packing, dir ? 'y' : 'x', dir ? 'y' : 'x');
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* clang-format on */
 
 /* At rest, or steady in the end: scenes of the paper, whose model does them no harm (a vesicle off the middle of a
    shear flow gets the warning). */
@@ -130,6 +115,7 @@ static PetscErrorCode SceneWarnOfSparse(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = SceneCarriedReynolds(scene), R0 = SceneLargestRadius(scene);
   const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0);
@@ -138,16 +124,17 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(SceneCheckStiffness(scene));
   seamless = FlowIsSeamless(scene, &dir);
-  PetscCall(SceneCheckPacking(scene, seamless, dir));
+  /* A copy beyond a periodic boundary moves as its vesicle does. Where the flow there is another one, the copies of a
+     packing, which fills the box, run into vesicles at once. */
+  PetscCall(SCENE_REFUSE_IF(scene, !seamless && scene->vesicles.packing > 0,
+    "-vesicle_packing {-vesicle_packing}: the background flow is not periodic in %c, so vesicles and the copies of others across that boundary would run into each other; allowed: -domain_bc_%c wall", {"xy"[dir % 2], "xy"[dir % 2]}));
   scene->reynolds = SceneReynolds(scene, R0);
   if (scene->fluid.inertia == INERTIA_AUTO) {
     const PetscBool carries = !baseline && R0 > 0 && !FlowIsPaper(scene) && scene->scheme.order > 1 && seamless;
     scene->fluid.inertia = !inertia ? INERTIA_NONE : carries ? INERTIA_CONVECTIVE : INERTIA_UNSTEADY;
   }
-  PetscCheck(scene->fluid.inertia != INERTIA_CONVECTIVE || seamless, scene->comm, PETSC_ERR_USER_INPUT,
-             "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance "
-             "across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady",
-             dir ? 'y' : 'x', dir ? 'y' : 'x');
+  PetscCall(SCENE_REFUSE_IF(scene, !seamless && scene->fluid.inertia == INERTIA_CONVECTIVE,
+    "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady", {"xy"[dir % 2], "xy"[dir % 2]}));
   *scene->warning = 0;
   if (scene->fluid.inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
     PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
@@ -158,3 +145,4 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
   PetscCall(SceneWarnOfSparse(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */

@@ -1,9 +1,9 @@
 /* The obstacles of a scene: circles, bumps or curves of a file, markers at equal distances on them, and what their
    surfaces do. */
-#include "scene/obstacles.h"
 #include "kernel/kernel.h"
 #include "scene/checks.h"
 #include "scene/properties.h"
+#include "scene/vesicles.h"
 
 #define SAMPLES 4000 /* of a curve, where it is looked for its places off a wall */
 #define HALVINGS 50  /* of a sample, to find the place */

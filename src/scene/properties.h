@@ -25,6 +25,10 @@ PETSC_EXTERN PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir);
 PETSC_EXTERN PetscBool SceneHasContrast(Scene scene);
 PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
 
+/* SceneHasInertia (inertia.c) - whether -fluid_inertia, or what auto stands for when the largest vesicle has this
+   radius (0: none), has inertia; the flow is known. Not collective. */
+PETSC_EXTERN PetscBool SceneHasInertia(Scene scene, PetscReal R0);
+
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
    SceneHasAreaTarget - whether each step aims at the first areas of the vesicles: coupled, but for the finite
    differences of the paper's membrane. SceneHasBoxPart - whether the near field has its box part: asked for, and no

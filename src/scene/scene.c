@@ -1,10 +1,7 @@
 /* A scene resolved from its options: all defaults in one order. */
 #include "scene/scene.h"
 #include "kernel/kernel.h"
-#include "scene/auto.h"
 #include "scene/checks.h"
-#include "scene/inertia.h"
-#include "scene/obstacles.h"
 #include "scene/vesicles.h"
 
 /* The user's lists, whose lengths have been checked, and the flow, for the fluid. */

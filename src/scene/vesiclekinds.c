@@ -42,26 +42,24 @@ static PetscReal KindMarkersByShape(Scene scene, const Kind *kind) {
  */
 #define MOST_MARKERS 10000
 
+/* clang-format off */
 /* Number of markers of a curve: the user's own; by the shape; or the even (for spectral edges odd) number nearest to
-   length/(spacing h). */
-static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscInt *M) {
+   length/(spacing h). They are as far apart as kernel and near field need. */
+static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscBool spectral, PetscInt *M) {
   const Kernel *kernel = KernelFind(scene->coupling.kernel);
   const SceneVesicles *own = &scene->vesicles;
-  const PetscBool exact = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool exact = scene->coupling.near_field == NEAR_EXACT, by_shape = exact && !own->markers && own->spacing == 0;
   const PetscReal spacing = own->spacing > 0 ? own->spacing : kernel->default_spacing;
+  const PetscReal least = exact ? NEAR_LEAST_SPACING : kernel->least_spacing;
   const PetscReal length = kind->length, h = FluidSpecCellSize(&scene->fluid), pairs = length / (2 * spacing * h);
-  const PetscBool by_shape = exact && !own->markers && own->spacing == 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal wanted = own->markers ? own->markers : (by_shape ? KindMarkersByShape(scene, kind) : 2 * pairs);
+  const SceneRule many[] = {
+    {own->markers > MOST_MARKERS,
+     "-vesicle_markers {-vesicle_markers}: more than the dense matrices of a vesicle hold; allowed: at most %.0f", {MOST_MARKERS}},
+    {wanted > MOST_MARKERS,
+     "-vesicle_spacing {-vesicle_spacing}: %.3g markers on a membrane of length %g at h = %g; allowed: at most %.0f a vesicle, so a smaller vesicle, a larger spacing or coarser -domain_cells", {wanted, length, h, MOST_MARKERS}}};
   PetscFunctionBeginUser;
-  PetscCheck(own->markers <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_markers %" PetscInt_FMT ": more than the dense matrices of a vesicle hold; allowed: at most %d",
-             own->markers, MOST_MARKERS);
-  PetscCheck(
-      wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
-      "-vesicle_spacing %g: %.3g markers on a membrane of length %g at h = %g; allowed: at most %d a vesicle, so "
-      "a smaller vesicle, a larger spacing or coarser -domain_cells",
-      (double)own->spacing, (double)wanted, (double)length, (double)h, MOST_MARKERS);
+  PetscCall(REFUSE(scene, many));
   if (own->markers)
     *M = own->markers;
   else if (by_shape)
@@ -69,37 +67,25 @@ static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscInt *M
   else /* odd: no Nyquist mode */
     *M = spectral ? 2 * (PetscInt)PetscFloorReal(pairs) + 1 : 2 * (PetscInt)PetscFloorReal(pairs + 0.5);
   if (!own->markers && !by_shape && spectral && *M > MANY) *M = KindFastOdd(*M);
-  PetscCheck(*M >= 8, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_spacing %g: %" PetscInt_FMT
-             " markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells",
-             (double)spacing, *M, (double)length, (double)h);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Check that M markers on a curve are as far apart as kernel and near field need. */
-static PetscErrorCode KindCheckSpacing(Scene scene, const Kind *kind, PetscInt M) {
-  const Kernel *kernel = KernelFind(scene->coupling.kernel);
-  const SceneVesicles *own = &scene->vesicles;
-  const PetscReal h = FluidSpecCellSize(&scene->fluid);
-  const PetscReal least = scene->coupling.near_field == NEAR_EXACT ? NEAR_LEAST_SPACING : kernel->least_spacing;
   /* rounding to a number of markers may go just below the limit */
-  const PetscReal s = own->spacing > 0 ? own->spacing : kind->length / (M * h);
-  PetscFunctionBeginUser;
-  PetscCheck(own->allow_close_markers || (!own->markers && !own->spacing) || s >= least * (1 - 1e-12), scene->comm,
-             PETSC_ERR_USER_INPUT,
-             "-vesicle_%s %g: markers %g h apart with -delta_type %s; allowed: at least %g h "
-             "(-vesicle_allow_close_markers goes on)",
-             own->markers ? "markers" : "spacing", own->markers ? (double)own->markers : (double)own->spacing,
-             (double)s, scene->coupling.kernel, (double)least);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal apart = own->spacing > 0 ? own->spacing : length / (*M * h);
+  const PetscBool close = !own->allow_close_markers && apart < least * (1 - 1e-12);
+  const SceneRule few[] = {
+    {*M < 8,
+     "-vesicle_spacing %g: %.0f markers on a membrane of length %g at h = %g; allowed: at least 8, so a finer -domain_cells", {spacing, *M, length, h}},
+    {close && own->markers,
+     "-vesicle_markers %g: markers %g h apart with -delta_type {-delta_type}; allowed: at least %g h (-vesicle_allow_close_markers goes on)", {own->markers, apart, least}},
+    {close && own->spacing > 0,
+     "-vesicle_spacing %g: markers %g h apart with -delta_type {-delta_type}; allowed: at least %g h (-vesicle_allow_close_markers goes on)", {spacing, apart, least}}};
+  return REFUSE(scene, few);
 }
+/* clang-format on */
 
 PetscErrorCode KindFit(Scene scene, Kind *kind) {
   const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
   PetscReal left;
   PetscFunctionBeginUser;
-  PetscCall(KindMarkerCount(scene, kind, &kind->M));
-  PetscCall(KindCheckSpacing(scene, kind, kind->M));
+  PetscCall(KindMarkerCount(scene, kind, spectral, &kind->M));
   PetscCall(PetscMalloc1(2 * kind->M, &kind->X));
   PetscCall(CurveEqualEdges(&kind->curve, NULL, spectral ? PETSC_FALSE : PETSC_TRUE, kind->M, kind->X));
   /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
@@ -107,38 +93,36 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers that define the curve of vesicle v, an ellipse or a biconcave outline: area and reduced area or both
-   semi-axes, and the bending stiffness. */
-static void EllipseKey(Scene scene, PetscInt v, PetscReal key[3]) {
+/* Set what defines an ellipse or a biconcave outline, of vesicle v. */
+static void KindGive(Scene scene, PetscInt v, PetscReal given[3]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool by_area = SceneByArea(scene);
   const PetscInt k = SceneKindOf(scene, v);
-  key[0] = by_area ? own->area_scale * ListEntry(&own->area, 1, k, 0) : ListEntry(&own->axes, 2, k, 0);
-  key[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
-  key[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
+  given[0] = by_area ? own->area_scale * ListEntry(&own->area, 1, k, 0) : ListEntry(&own->axes, 2, k, 0);
+  given[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
+  given[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
 }
 
 static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
-  PetscReal(*key)[3];
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(all->vesicles, &all->kind));
-  PetscCall(PetscMalloc1(all->vesicles, &key)); /* of the kinds */
   for (PetscInt v = 0; v < all->vesicles; v++) {
+    Kind *next = &all->kind[all->kinds];
+    const PetscReal *given = next->given;
     PetscInt k = 0;
-    EllipseKey(scene, v, key[all->kinds]);
-    while (memcmp(key[k], key[all->kinds], sizeof(*key))) k++;
+    KindGive(scene, v, next->given);
+    while (memcmp(all->kind[k].given, given, sizeof(next->given))) k++;
     all->of[v] = k;
     if (k < all->kinds) continue;
-    Kind *kind = &all->kind[all->kinds++];
+    all->kinds++;
     if (scene->vesicles.shape == SHAPE_BICONCAVE)
-      PetscCall(BiconcaveCurve(key[k][0], key[k][1], &kind->curve));
+      PetscCall(BiconcaveCurve(given[0], given[1], &next->curve));
     else if (SceneByArea(scene))
-      PetscCall(EllipseAxes(key[k][0], key[k][1], kind->curve.axes));
+      PetscCall(EllipseAxes(given[0], given[1], next->curve.axes));
     else
-      PetscCall(PetscArraycpy(kind->curve.axes, key[k], 2));
-    kind->bending = key[k][2];
+      PetscCall(PetscArraycpy(next->curve.axes, given, 2));
+    next->bending = given[2];
   }
-  PetscCall(PetscFree(key));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,11 +152,6 @@ static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal SceneBoxArea(Scene scene) {
-  const PetscReal *b = scene->domain.box.v; /* the fluid is not described yet */
-  return (b[1] - b[0]) * (b[3] - b[2]);
-}
-
 /* Mean area of a vesicle by the mixture. */
 static PetscReal KindsMeanArea(Scene scene) {
   const SceneVesicles *own = &scene->vesicles;
@@ -185,27 +164,28 @@ static PetscReal KindsMeanArea(Scene scene) {
   return mean;
 }
 
+/* clang-format off */
 /* How many vesicles a packing takes, or with -vesicle_count their area. */
 static PetscErrorCode KindsCountPacked(Draft scene) {
   SceneVesicles *own = &scene->vesicles;
-  const PetscReal mean = KindsMeanArea(scene), box = SceneBoxArea(scene), wanted = own->packing * box / mean;
+  const PetscReal *b = scene->domain.box.v, box = (b[1] - b[0]) * (b[3] - b[2]); /* the fluid is not described yet */
+  const PetscReal mean = KindsMeanArea(scene), wanted = own->packing * box / mean;
+  const PetscBool counted = SceneGiven(scene, "-vesicle_count");
+  const SceneRule rules[] = {
+    {FluidSpecIsFree(&scene->fluid),
+     "-vesicle_packing {-vesicle_packing}: not with -domain_bc_x free, where the box holds nothing; allowed: walls or periodic boundaries"},
+    {!counted && (wanted < 0.5 || wanted >= PETSC_MAX_INT / 64),
+     "-vesicle_packing {-vesicle_packing}: %.3g vesicles of area %g in a box of area %g; allowed: a fraction of at least one vesicle, and as many as can be numbered", {wanted, mean, box}}};
   PetscFunctionBeginUser;
   if (own->shape != SHAPE_ELLIPSE || own->packing == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!FluidSpecIsFree(&scene->fluid), scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_packing %g: not with -domain_bc_x free, where the box holds nothing; allowed: walls or periodic "
-             "boundaries",
-             (double)own->packing);
-  if (SceneGiven(scene, "-vesicle_count")) {
+  PetscCall(REFUSE(scene, rules));
+  if (counted)
     own->area_scale = wanted / own->count;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCheck(wanted >= 0.5 && wanted < PETSC_MAX_INT / 64, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_packing %g: %.3g vesicles of area %g in a box of area %g; allowed: a fraction of at least one "
-             "vesicle, and as many as can be numbered",
-             (double)own->packing, (double)wanted, (double)mean, (double)box);
-  own->count = (PetscInt)PetscFloorReal(wanted + 0.5);
+  else
+    own->count = (PetscInt)PetscFloorReal(wanted + 0.5);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
 
 /* The entry of the lists that each of -vesicle_count vesicles takes with -vesicle_mixture: one after another the kind
    that is furthest behind its part, so that any row of vesicles has the mixture. */

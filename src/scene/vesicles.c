@@ -1,6 +1,7 @@
 /* The initial markers of a scene: equal edges on ellipses or on curves from a file, each where it belongs. */
 #include "scene/vesicles.h"
 #include "curve/crossing.h"
+#include "scene/checks.h"
 #include "scene/properties.h"
 
 /* Markers X on a kind's curve, turned and moved, as Y, which may be X. */
@@ -15,23 +16,6 @@ static void KindPlace(const Kind *kind, const Pose *at, PetscInt M, const PetscR
 
 #define OUTLINE 256 /* points that stand for a curve */
 
-/* The options that a vesicle's size comes from. */
-static PetscErrorCode VesicleSizeOptions(Scene scene, PetscInt v, char text[], size_t length) {
-  const SceneVesicles *own = &scene->vesicles;
-  const PetscInt k = SceneKindOf(scene, v);
-  PetscFunctionBeginUser;
-  if (own->shape == SHAPE_FILE)
-    PetscCall(PetscSNPrintf(text, length, "-vesicle_file %s", own->file));
-  else if (SceneByArea(scene))
-    PetscCall(PetscSNPrintf(text, length, "-vesicle_area %g -vesicle_reduced_area %g",
-                            (double)own->area_scale * ListEntry(&own->area, 1, k, 0),
-                            (double)ListEntry(&own->reduced_area, 1, k, 0)));
-  else
-    PetscCall(PetscSNPrintf(text, length, "-vesicle_semi_axes %g,%g", (double)ListEntry(&own->axes, 2, k, 0),
-                            (double)ListEntry(&own->axes, 2, k, 1)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
   for (PetscInt k = 0; k < OUTLINE; k++) {
     PetscReal X[2];
@@ -43,28 +27,33 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
 
 /* Check that a curve, turned and moved, is between the walls and no longer than a period, before markers are fitted to
    the curve. */
+/* clang-format off */
 static PetscErrorCode VesicleCheckRoom(Scene scene, const Kind *kind, const Pose *at, PetscInt v) {
   const FluidSpec *f = &scene->fluid;
+  const PetscReal *size = kind->given;
+  const PetscBool file = scene->vesicles.shape == SHAPE_FILE, by_area = SceneByArea(scene);
   PetscReal around[4] = CURVE_NOWHERE;
-  char size[256];
   PetscFunctionBeginUser;
-  PetscCall(VesicleSizeOptions(scene, v, size, sizeof(size)));
   KindExtend(kind, at, around);
-  for (int dir = 0; dir < 2 && f->bc[dir] != BC_FREE; dir++) {
-    const PetscReal *wall = f->box + 2 * dir, width = wall[1] - wall[0];
-    const PetscReal low = around[2 * dir], high = around[2 * dir + 1];
-    PetscCheck(high - low <= width, scene->comm, PETSC_ERR_USER_INPUT,
-               "%s: vesicle %" PetscInt_FMT " is %g long in %c, -domain_box %g; allowed: one that fits in", size, v + 1,
-               (double)(high - low), dir ? 'y' : 'x', (double)width);
-    const int side = high > wall[1] ? 1 : 0;
-    PetscCheck(f->bc[dir] == BC_PERIODIC || (low >= wall[0] && high <= wall[1]), scene->comm, PETSC_ERR_USER_INPUT,
-               "-vesicle_center %g,%g: vesicle %" PetscInt_FMT
-               " reaches %c = %g, beyond the wall %c_%s = %g; allowed: a vesicle inside -domain_box",
-               (double)at->center[0], (double)at->center[1], v + 1, dir ? 'y' : 'x', (double)(side ? high : low),
-               dir ? 'y' : 'x', side ? "max" : "min", (double)wall[side]);
+  for (int d = 0; d < 2 && f->bc[d] != BC_FREE; d++) {
+    const PetscReal *wall = f->box + 2 * d, width = wall[1] - wall[0], low = around[2 * d], high = around[2 * d + 1];
+    const PetscBool too_long = high - low > width, walls = f->bc[d] != BC_PERIODIC;
+    const SceneRule rules[] = {
+      {too_long && file,
+       "-vesicle_file {-vesicle_file}: vesicle %.0f is %g long in %c, -domain_box %g; allowed: one that fits in", {v + 1, high - low, "xy"[d], width}},
+      {too_long && by_area,
+       "-vesicle_area %g -vesicle_reduced_area %g: vesicle %.0f is %g long in %c, -domain_box %g; allowed: one that fits in", {size[0], size[1], v + 1, high - low, "xy"[d], width}},
+      {too_long,
+       "-vesicle_semi_axes %g,%g: vesicle %.0f is %g long in %c, -domain_box %g; allowed: one that fits in", {size[0], size[1], v + 1, high - low, "xy"[d], width}},
+      {walls && high > wall[1],
+       "-vesicle_center %g,%g: vesicle %.0f reaches %c = %g, beyond the wall %c_max = %g; allowed: a vesicle inside -domain_box", {at->center[0], at->center[1], v + 1, "xy"[d], high, "xy"[d], wall[1]}},
+      {walls && low < wall[0],
+       "-vesicle_center %g,%g: vesicle %.0f reaches %c = %g, beyond the wall %c_min = %g; allowed: a vesicle inside -domain_box", {at->center[0], at->center[1], v + 1, "xy"[d], low, "xy"[d], wall[0]}}};
+    PetscCall(REFUSE(scene, rules));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
 
 /* A search for a vesicle whose first marker, or an image of it, lies within another vesicle. */
 typedef struct {
@@ -102,6 +91,7 @@ static PetscErrorCode VesiclesFindWithin(const Shape *s, const PetscReal period[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */
 static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
   const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
@@ -111,17 +101,18 @@ static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
   FluidSpecPeriods(&scene->fluid, period);
   const CurveSet set = {s->vesicles, s->vesicles, s->start, NULL, s->X, period, smooth};
   PetscCall(CurvesCross(&set, pair));
-  PetscCheck(pair[0] < 0 || pair[0] != pair[1], scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: vesicle %" PetscInt_FMT
-             " crosses itself or its periodic image; allowed: curves that do not, in a box that holds them",
-             scene->vesicles.shape == SHAPE_FILE ? "-vesicle_file" : "-domain_box", pair[0] + 1);
   if (pair[0] < 0) PetscCall(VesiclesFindWithin(s, period, pair));
-  PetscCheck(pair[0] < 0, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
-             " overlap; allowed: vesicles apart from one another",
-             pair[0] + 1, pair[1] + 1);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscBool itself = pair[0] >= 0 && pair[0] == pair[1];
+  const SceneRule rules[] = {
+    {itself && scene->vesicles.shape == SHAPE_FILE,
+     "-vesicle_file: vesicle %.0f crosses itself or its periodic image; allowed: curves that do not, in a box that holds them", {pair[0] + 1}},
+    {itself,
+     "-domain_box: vesicle %.0f crosses itself or its periodic image; allowed: curves that do not, in a box that holds them", {pair[0] + 1}},
+    {pair[0] >= 0,
+     "-vesicle_center: vesicles %.0f and %.0f overlap; allowed: vesicles apart from one another", {pair[0] + 1, pair[1] + 1}}};
+  return REFUSE(scene, rules);
 }
+/* clang-format on */
 
 /* Fit the kinds, and make the shape with the numbers of their markers. */
 static PetscErrorCode VesiclesCreateShape(Scene scene, Kinds *kinds, Shape *shape) {

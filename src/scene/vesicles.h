@@ -1,5 +1,5 @@
-/* The vesicles of a scene: their kinds, their places and their initial markers. Equal vesicles share one curve and the
-   markers fitted to it, so that a scene of many starts in the time of its kinds. */
+/* The vesicles of a scene: their kinds, their places and their initial markers; and its solid bodies. Equal vesicles
+   share one curve and the markers fitted to it, so that a scene of many starts in the time of its kinds. */
 #pragma once
 #include "curve/packing.h"
 #include "scene/spec.h"
@@ -7,6 +7,7 @@
 typedef struct {
   Curve curve;        /* about the origin, or where its file has it */
   PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
+  PetscReal given[3]; /* area and reduced area, or both semi-axes; and the bending stiffness: not of a file's curve */
   PetscReal length, area, bending;
   PetscInt M;   /* markers, 0 before KindFit */
   PetscReal *X; /* [2M] */
@@ -37,6 +38,12 @@ PETSC_EXTERN PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pos
    position, and when a packing has no room. SceneDropShape - what it has made is gone, so that it can be made anew. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);
+
+/* SceneMakeObstacles (obstacles.c) - the markers of the scene's obstacles, equally spaced, and what their surfaces do;
+   that the rest of the scene goes with them. The vesicles are known. Collective; stops with the user's message.
+   SceneDropObstacles - free them. */
+PETSC_EXTERN PetscErrorCode SceneMakeObstacles(Draft scene);
+PETSC_EXTERN PetscErrorCode SceneDropObstacles(Draft scene);
 
 /* KindExtend - make the rectangle around[4] of CurveBounds hold a kind's curve, turned and moved. Not collective. */
 PETSC_EXTERN void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]);
