@@ -122,10 +122,8 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode OptionsCheckUnused(const OptionTable *table, const void *values, const char *const others[],
                                                const OptionOwner owners[], const OptionSuggestion suggestions[]);
 
-/* OptionParse - text into the place of a row's value. Collective: a text that does not fit is the user's mistake.
-   OptionFormat - the value as text, to be freed with PetscFree. */
+/* OptionParse - text into the place of a row's value. Collective: a text that does not fit is the user's mistake. */
 PETSC_EXTERN PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *row, const char text[], void *place);
-PETSC_EXTERN PetscErrorCode OptionFormat(const OptionRow *row, const void *place, char **text);
 
 /* OptionsTryLate - read now what PETSc reads when a run is over (-log_view, -options_left, -options_view): a mistake in
    it would be found only then. Collective. Errors: no such viewer, a file that cannot be written. */

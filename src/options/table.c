@@ -1,8 +1,8 @@
 /* All options of a table: read, chosen, shown, written. */
 #include "options/options.h"
 
-static const void *OptionPlace(const OptionTable *t, const void *values, PetscInt i) {
-  return (const char *)values + t->row[i].offset;
+static void *OptionPlace(const OptionTable *t, void *values, PetscInt i) {
+  return (char *)values + t->row[i].offset;
 }
 
 /* The value that the user gave, as long as it may be, or the default. */
@@ -34,7 +34,7 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
     PetscCall(PetscSNPrintf(ranged, sizeof(ranged), *range ? "%s [%s]" : "%s%s", help, range));
     PetscCall(
         PetscOptionsString(row[i].name, ranged, "docs/options.md", row[i].value, text, sizeof(text), &t->given[i]));
-    PetscCall(OptionReadValue(comm, &row[i], t->given[i], (void *)OptionPlace(t, values, i)));
+    PetscCall(OptionReadValue(comm, &row[i], t->given[i], OptionPlace(t, values, i)));
   }
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -43,7 +43,7 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
 PetscErrorCode OptionsDestroy(OptionTable *t, void *values) {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
-    void *place = (void *)OptionPlace(t, values, i);
+    void *place = OptionPlace(t, values, i);
     if (t->row[i].type == OPT_REALS) PetscCall(PetscFree(((RealList *)place)->v));
     if (t->row[i].type == OPT_INTS) PetscCall(PetscFree(((IntList *)place)->v));
   }
@@ -67,7 +67,7 @@ PetscErrorCode OptionChoose(const OptionTable *t, void *values, const char name[
   const PetscInt i = OptionFind(t, name);
   PetscFunctionBeginUser;
   PetscCheck(i >= 0, t->comm, PETSC_ERR_PLIB, "%s is not in the table of options", name);
-  if (!t->given[i]) PetscCall(OptionParse(t->comm, &t->row[i], text, (void *)OptionPlace(t, values, i)));
+  if (!t->given[i]) PetscCall(OptionParse(t->comm, &t->row[i], text, OptionPlace(t, values, i)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,12 +110,6 @@ PetscErrorCode OptionsCheckUsed(const OptionTable *t, const void *values) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {
-  PetscFunctionBeginUser;
-  PetscCall(OptionFormat(&t->row[i], OptionPlace(t, values, i), text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode OptionValue(const OptionTable *t, const void *values, PetscInt i, char text[], size_t length) {
   char *all;
   PetscFunctionBeginUser;
@@ -137,7 +131,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
     PetscBool left = OptionUsed(&t->row[i], values) ? PETSC_FALSE : PETSC_TRUE;
     for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name) ? PETSC_TRUE : PETSC_FALSE;
     if (left) continue;
-    PetscCall(OptionFormat(&t->row[i], OptionPlace(t, values, i), &text));
+    PetscCall(OptionText(t, values, i, &text));
     if (*text) OptionPrint(file, t->row[i].name, text);
     PetscCall(PetscFree(text));
   }

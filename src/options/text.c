@@ -151,59 +151,31 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Characters that the value takes, its end included. */
-static size_t OptionRoom(const OptionRow *o, const void *place) {
-  if (o->type == OPT_PATH) return PETSC_MAX_PATH_LEN;
-  if (o->type == OPT_REALS) return DIGITS * (size_t)((const RealList *)place)->n + 1;
-  if (o->type == OPT_INTS) return DIGITS * (size_t)((const IntList *)place)->n + 1;
-  return DIGITS + OPTION_MAX_NAME;
-}
-
-static PetscErrorCode OptionFormatList(const OptionRow *o, const void *place, char text[]) {
-  const RealList *reals = (const RealList *)place;
-  const IntList *ints = (const IntList *)place;
-  const PetscInt n = o->type == OPT_REALS ? reals->n : ints->n;
+PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {
+  const OptionRow *o = &t->row[i];
+  const void *place = (const char *)values + o->offset;
+  const RealList *list = (const RealList *)place;
+  const PetscBool listed = o->type == OPT_REALS || o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool real = o->type == OPT_REALS || o->type == OPT_REAL ? PETSC_TRUE : PETSC_FALSE;
+  const void *number = listed ? (const void *)list->v : place;
+  const PetscInt n = listed ? list->n : o->type == OPT_REAL || o->type == OPT_INT ? 1 : 0;
+  const size_t room = PETSC_MAX_PATH_LEN + DIGITS * (size_t)n;
   PetscFunctionBeginUser;
-  *text = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    const char *comma = k ? "," : "";
-    if (o->type == OPT_REALS)
-      PetscCall(PetscSNPrintf(text, DIGITS + 1, "%s%.17g", comma, (double)reals->v[k]));
-    else
-      PetscCall(PetscSNPrintf(text, DIGITS + 1, "%s%" PetscInt_FMT, comma, ints->v[k]));
-    text += strlen(text);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode OptionFormat(const OptionRow *o, const void *place, char **out) {
-  const size_t room = OptionRoom(o, place);
-  char *text;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(room, &text));
-  *out = text;
-  switch (o->type) {
-  case OPT_REAL:
-    PetscCall(PetscSNPrintf(text, room, "%.17g", (double)*(const PetscReal *)place));
-    break;
-  case OPT_INT:
-    PetscCall(PetscSNPrintf(text, room, "%" PetscInt_FMT, *(const PetscInt *)place));
-    break;
-  case OPT_BOOL:
-    PetscCall(PetscStrncpy(text, *(const PetscBool *)place ? "true" : "false", room));
-    break;
-  case OPT_ENUM: {
+  PetscCall(PetscCalloc1(room, text));
+  if (o->type == OPT_BOOL) PetscCall(PetscStrncpy(*text, *(const PetscBool *)place ? "true" : "false", room));
+  if (o->type == OPT_NAME || o->type == OPT_PATH) PetscCall(PetscStrncpy(*text, (const char *)place, room));
+  if (o->type == OPT_ENUM) {
     const char *p = o->range;
     for (PetscInt k = *(const PetscInt *)place; k > 0; k--) p = strchr(p, '|') + 1;
-    PetscCall(PetscStrncpy(text, p, PetscMin(room, strcspn(p, "|") + 1)));
-    break;
+    PetscCall(PetscStrncpy(*text, p, strcspn(p, "|") + 1));
   }
-  case OPT_REALS:
-  case OPT_INTS:
-    PetscCall(OptionFormatList(o, place, text));
-    break;
-  default:
-    PetscCall(PetscStrncpy(text, (const char *)place, room));
+  char *end = *text;
+  for (PetscInt k = 0; k < n; k++, end += strlen(end)) {
+    const char *comma = k ? "," : "";
+    if (real)
+      PetscCall(PetscSNPrintf(end, DIGITS + 1, "%s%.17g", comma, (double)((const PetscReal *)number)[k]));
+    else
+      PetscCall(PetscSNPrintf(end, DIGITS + 1, "%s%" PetscInt_FMT, comma, ((const PetscInt *)number)[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,18 +15,6 @@ static PetscReal ArcOff(const FluidSpec *f, PetscInt wall, const PetscReal X[2])
   return (wall % 2 ? -1 : 1) * (X[wall / 2] - f->box[wall]);
 }
 
-/* The wall that X is nearest to, and how far that is. */
-static PetscInt ArcNearestWall(const FluidSpec *f, const PetscReal X[2], PetscReal *off) {
-  PetscInt nearest = -1;
-  *off = PETSC_MAX_REAL;
-  for (PetscInt wall = 0; wall < 4; wall++) {
-    if (f->bc[wall / 2] != BC_WALL || PetscAbsReal(ArcOff(f, wall, X)) >= PetscAbsReal(*off)) continue;
-    *off = ArcOff(f, wall, X);
-    nearest = wall;
-  }
-  return nearest;
-}
-
 /* The parameter between two at which the curve leaves the height, low below it and high above. */
 static PetscReal ArcLeave(const FluidSpec *f, const Curve *c, PetscInt wall, PetscReal height, PetscReal low,
                           PetscReal high) {
@@ -45,13 +33,13 @@ static PetscReal ArcLeave(const FluidSpec *f, const Curve *c, PetscInt wall, Pet
 /* clang-format off */
 /* Both ends are on one wall, which is returned. */
 static PetscErrorCode ArcCheckEnds(Scene scene, PetscInt b, const Curve *c, PetscReal height, PetscInt *wall) {
-  const FluidSpec *f = &scene->fluid;
+  const CurveRoom room = SceneRoom(scene);
   PetscInt at[2];
   PetscFunctionBeginUser;
   for (int end = 0; end < 2; end++) {
-    PetscReal X[2], off;
+    PetscReal X[2];
     CurveEvaluate(c, end, X);
-    at[end] = ArcNearestWall(f, X, &off);
+    const PetscReal off = CurveWallGap(1, X, &room, &at[end]);
     PetscCall(SCENE_REFUSE_IF(scene, at[end] < 0 || off > height,
       "-obstacle_shape: obstacle %.0f is open and ends at (%g, %g), on no wall; allowed: both ends on one wall of the box, closed curves, and ones whose last point is the first but for a period", {b + 1, X[0], X[1]}));
   }

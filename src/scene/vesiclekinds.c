@@ -208,34 +208,28 @@ static PetscErrorCode KindsMix(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rate or velocity that the dimensionless `number` stands for: number c_b/(nu R0^power), R0 of the largest vesicle.
- */
-static PetscErrorCode FlowDerive(Draft scene, const char name[], PetscReal number, const char stands_for[], int power,
-                                 PetscReal *value) {
-  const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI);
-  PetscFunctionBeginUser;
-  PetscCheck(!SceneGiven(scene, stands_for), scene->comm, PETSC_ERR_USER_INPUT,
-             "%s %g: given together with %s; allowed: one of them", name, (double)number, stands_for);
-  PetscCheck(R0 > 0 && scene->membrane.bending > 0, scene->comm, PETSC_ERR_USER_INPUT,
-             "%s %g: without vesicles that bend there is no time nu R0^3/c_b; allowed: vesicles with -vesicle_bending "
-             "above 0, or %s",
-             name, (double)number, stands_for);
-  *value = number * scene->membrane.bending / (scene->fluid.nu * PetscPowRealInt(R0, power));
-  PetscCheck(!PetscIsInfOrNanReal(*value), scene->comm, PETSC_ERR_USER_INPUT,
-             "%s %g: stands for a %s of %g; allowed: a finite one", name, (double)number, stands_for + 1,
-             (double)*value);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* The rate or peak velocity from -flow_chi or -flow_ca:
 
-/* Rate or peak velocity from -flow_chi or -flow_ca. */
+     value = number c_b/(nu R0^power),   R0 of the largest vesicle. */
 static PetscErrorCode FlowChoose(Draft scene) {
   Flow *flow = &scene->flow;
-  const PetscBool strain = flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool channel = flow->type == FLOW_POISEUILLE ? PETSC_TRUE : PETSC_FALSE;
+  const char *const name = channel ? "-flow_ca" : "-flow_chi", *const stands_for = channel ? "-flow_peak_velocity"
+                                                                                           : "-flow_rate";
+  const PetscReal number = channel ? flow->ca : flow->chi, R0 = scene->shape.longest / (2 * PETSC_PI);
+  PetscReal *value = channel ? &flow->peak : &flow->rate;
   PetscFunctionBeginUser;
-  if (strain && SceneGiven(scene, "-flow_chi"))
-    PetscCall(FlowDerive(scene, "-flow_chi", flow->chi, "-flow_rate", 3, &flow->rate));
-  if (flow->type == FLOW_POISEUILLE && SceneGiven(scene, "-flow_ca"))
-    PetscCall(FlowDerive(scene, "-flow_ca", flow->ca, "-flow_peak_velocity", 2, &flow->peak));
+  if (!(channel || flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) || !SceneGiven(scene, name))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetvesCheck(!SceneGiven(scene, stands_for), scene->comm, "%s %g: given together with %s; allowed: one of them", name,
+              (double)number, stands_for);
+  PetvesCheck(R0 > 0 && scene->membrane.bending > 0, scene->comm,
+              "%s %g: without vesicles that bend there is no time nu R0^3/c_b; allowed: vesicles with -vesicle_bending "
+              "above 0, or %s",
+              name, (double)number, stands_for);
+  *value = number * scene->membrane.bending / (scene->fluid.nu * PetscPowRealInt(R0, channel ? 2 : 3));
+  PetvesCheck(!PetscIsInfOrNanReal(*value), scene->comm, "%s %g: stands for a %s of %g; allowed: a finite one", name,
+              (double)number, stands_for + 1, (double)*value);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

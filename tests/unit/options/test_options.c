@@ -58,12 +58,12 @@ static PetscErrorCode CheckText(const OptionTable *table, Values *values) {
     char *text, *again, part[8];
     void *place = (char *)values + rows[i].offset;
     PetscBool same;
-    PetscCall(OptionFormat(&rows[i], place, &text));
+    PetscCall(OptionText(table, values, i, &text));
     PetscCall(OptionValue(table, values, i, part, sizeof(part)));
     CHECK(!strncmp(part, text, 7) && strlen(part) == PetscMin(strlen(text), (size_t)7), "%s: its value, cut: %s",
           rows[i].name, part);
     if (*text) PetscCall(OptionParse(PETSC_COMM_WORLD, &rows[i], text, place));
-    PetscCall(OptionFormat(&rows[i], place, &again));
+    PetscCall(OptionText(table, values, i, &again));
     PetscCall(PetscStrcmp(text, again, &same));
     CHECK(same, "%s: %zu characters read back to the same text", rows[i].name, strlen(text));
     PetscCall(PetscFree(text));
