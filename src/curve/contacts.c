@@ -4,19 +4,12 @@
 
 #define CONTACT_FINER 8 /* times as many points where smooth curves are near */
 
-/* A contact of a point, and the number of the point's next one, or -1. */
-typedef struct {
-  CurveContact contact;
-  PetscInt next;
-} ContactLink;
-
 typedef struct {
   const CurveSet *set;
   PetscReal reach;
-  PetscReal seam;       /* an image of a point is farther than this from the point */
-  PetscInt *curve;      /* [points] the curve that a point is on */
-  PetscInt *head;       /* [points] number of a point's first contact, or -1 */
-  ContactLink *contact; /* [count] */
+  PetscReal seam;        /* an image of a point is farther than this from the point */
+  PetscInt *curve;       /* [points] the curve that a point is on */
+  CurveContact *contact; /* [count] */
   PetscInt count;
   size_t capacity;
   PetscErrorCode error;
@@ -59,19 +52,22 @@ static PetscBool ContactMeasure(const ContactSearch *s, PetscInt p, PetscInt q, 
   return PETSC_TRUE;
 }
 
-/* Keep contact c if no contact of its point with its curve so far is nearer. */
+/* Keep contact c if it is within reach. */
 static PetscErrorCode ContactOffer(ContactSearch *s, const CurveContact *c) {
-  PetscInt k = s->head[c->point];
   PetscFunctionBeginUser;
   if (PetscAbsReal(c->distance) >= s->reach) PetscFunctionReturn(PETSC_SUCCESS);
-  while (k >= 0 && s->contact[k].contact.curve[1] != c->curve[1]) k = s->contact[k].next;
-  if (k < 0) {
-    PetscCall(ArrayReserve((size_t)(s->count + 1), &s->capacity, &s->contact));
-    s->contact[s->count] = (ContactLink){*c, s->head[c->point]};
-    s->head[c->point] = s->count++;
-  } else if (PetscAbsReal(c->distance) < PetscAbsReal(s->contact[k].contact.distance))
-    s->contact[k].contact = *c;
+  PetscCall(ArrayReserve((size_t)(s->count + 1), &s->capacity, &s->contact));
+  s->contact[s->count++] = *c;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The order of contacts: by point, by curve, then from near to far. */
+static int ContactOrder(const void *first, const void *second) {
+  const CurveContact *a = (const CurveContact *)first, *b = (const CurveContact *)second;
+  const PetscReal x = PetscAbsReal(a->distance), y = PetscAbsReal(b->distance);
+  if (a->point != b->point) return a->point < b->point ? -1 : 1;
+  if (a->curve[1] != b->curve[1]) return a->curve[1] < b->curve[1] ? -1 : 1;
+  return (x > y) - (x < y);
 }
 
 /* Offer the contacts of points i and j, the image of j being d from i, each with the two edges at the other. */
@@ -108,24 +104,21 @@ PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, 
   /* a point nearer than reach to an edge is nearer than this to one end of the edge */
   const PetscReal apart = PetscHypotReal(reach, 0.5 * CurveLongestEdge(set));
   ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
-  PetscInt count = 0;
   PetscFunctionBeginUser;
   *n = 0;
-  *contacts = NULL;
   for (int d = 0; d < 2; d++)
     if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
-  PetscCall(PetscMalloc2(points, &s.curve, points, &s.head));
+  PetscCall(PetscMalloc1(points, &s.curve));
   for (PetscInt v = 0; v < set->curves; v++)
     for (PetscInt k = set->start[v]; k < set->start[v + 1]; k++) s.curve[k] = v;
-  for (PetscInt k = 0; k < points; k++) s.head[k] = -1;
   PetscCall(PairsWithin(points, set->X, first, set->period, apart, ContactNear, &s));
   PetscCall(s.error);
-  PetscCall(PetscMalloc1(s.count, contacts));
-  for (PetscInt p = 0; p < points; p++)
-    for (PetscInt k = s.head[p]; k >= 0; k = s.contact[k].next) (*contacts)[count++] = s.contact[k].contact;
-  *n = count;
-  PetscCall(PetscFree2(s.curve, s.head));
-  PetscCall(PetscFree(s.contact));
+  if (s.count) qsort(s.contact, (size_t)s.count, sizeof(*s.contact), ContactOrder);
+  for (PetscInt k = 0; k < s.count; k++)
+    if (!*n || s.contact[k].point != s.contact[*n - 1].point || s.contact[k].curve[1] != s.contact[*n - 1].curve[1])
+      s.contact[(*n)++] = s.contact[k];
+  *contacts = s.contact;
+  PetscCall(PetscFree(s.curve));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

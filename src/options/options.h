@@ -103,10 +103,10 @@ PETSC_EXTERN void OptionHelpText(const OptionRow *row, const OptionDefault depen
 PETSC_EXTERN PetscErrorCode OptionsWrite(const OptionTable *table, const void *values, const char *const skip[],
                                          FILE *file);
 
-/* Options of a solver begin with its prefix ("-tension_"); `need` is the option of the table, and its value, with which
-   the solver is there. A list ends with NULL. */
+/* Options of a solver begin with its prefix ("-tension_"); the solver is there when the option `name` of the table has
+   the value. A list ends with NULL. */
 typedef struct {
-  const char *prefix, *need;
+  const char *prefix, *name, *value;
 } OptionOwner;
 
 /* What names ask for that are none, and what to say. Between blanks: a whole name ("-dt"), or words in it ("*inflow").

@@ -137,33 +137,21 @@ static PetscBool NameIsAmong(const OptionTable *t, const char *names, const char
   return PETSC_FALSE;
 }
 
-/* Find out whether the options in force are those that a solver needs: "-name value". */
-static PetscErrorCode OptionHasOwner(const OptionTable *t, const void *values, const char need[], PetscBool *has) {
-  const size_t n = strcspn(need, " ");
-  char name[64], value[64] = "";
-  PetscInt i;
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(name, need, PetscMin(sizeof(name), n + 1)));
-  i = OptionFind(t, name);
-  if (i >= 0) PetscCall(OptionValue(t, values, i, value, sizeof(value)));
-  *has = !strcmp(value, need + n + 1) ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* An option that nothing has read, with its dash. */
 static PetscErrorCode OptionRefuse(const OptionTable *t, const void *values, const char *const others[],
                                    const OptionOwner owners[], const OptionSuggestion *suggestion, const char name[],
                                    const char value[]) {
+  const OptionOwner *owner = owners;
   const char *meant;
-  PetscBool known = PETSC_FALSE, has = PETSC_TRUE;
-  PetscInt k = 0;
+  char in_force[OPTION_MAX_NAME];
+  PetscBool known = PETSC_FALSE;
   PetscFunctionBeginUser;
-  while (owners[k].prefix && strncmp(owners[k].prefix, name, strlen(owners[k].prefix))) k++;
-  if (owners[k].prefix) PetscCall(OptionHasOwner(t, values, owners[k].need, &has));
+  while (owner->prefix && strncmp(owner->prefix, name, strlen(owner->prefix))) owner++;
+  if (owner->prefix) PetscCall(OptionValue(t, values, OptionFind(t, owner->name), in_force, sizeof(in_force)));
   for (PetscInt i = 0; others[i] && !known; i++) PetscCall(PetscStrcmp(others[i], name, &known));
-  PetscCheck(has, t->comm, PETSC_ERR_USER_INPUT,
-             "%s %s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", name, value,
-             owners[k].need);
+  PetscCheck(!owner->prefix || !strcmp(in_force, owner->value), t->comm, PETSC_ERR_USER_INPUT,
+             "%s %s: not used by this scene; allowed: with %s %s (-allow_unused_options goes on)", name, value,
+             owner->name, owner->value);
   PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
              "%s %s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", name, value);
   while (suggestion->names && !NameIsAmong(t, suggestion->names, name)) suggestion++;

@@ -200,14 +200,12 @@ static PetscErrorCode SuggestLargestStep(Draft s, char value[AUTO_TEXT], char wh
 }
 
 static PetscErrorCode SuggestSolver(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
-  (void)value;
   (void)snprintf(why, AUTO_TEXT, "the solver leaves up to %.1e", (double)CalibratedRow(s)->of_solver);
   return PETSC_SUCCESS;
 }
 
 /* The number of markers has been chosen by SceneChooseMarkers. */
 static PetscErrorCode SuggestMarkers(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
-  (void)value;
   if (s->vesicles.markers > 0) (void)snprintf(why, AUTO_TEXT, "by the shapes, films and compression of the start");
   return PETSC_SUCCESS;
 }

@@ -103,22 +103,13 @@ PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], PetscReal h, P
 
 #define MARKERS 45
 
-static PetscInt ShapeFewestMarkers(const Shape *shape) {
-  PetscInt fewest = PETSC_MAX_INT;
-  for (PetscInt v = 0; v < shape->vesicles; v++) fewest = PetscMin(fewest, shape->start[v + 1] - shape->start[v]);
-  return fewest;
-}
-
-/* The least distance of a marker from a wall; PETSC_MAX_REAL without walls. */
-static PetscReal ShapeWallGap(Scene scene) {
-  const CurveRoom room = SceneRoom(scene);
-  PetscInt side;
-  return CurveWallGap(scene->shape.start[scene->shape.vesicles], scene->shape.X, &room, &side);
-}
-
 /* Print the error of walls that are near to a vesicle, and the grid that would be enough. */
 static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
-  const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), gap = ShapeWallGap(scene);
+  const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid);
+  const Shape *shape = &scene->shape;
+  const CurveRoom room = SceneRoom(scene);
+  PetscInt side;
+  const PetscReal gap = CurveWallGap(shape->start[shape->vesicles], shape->X, &room, &side);
   const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0, wanted = scene->scheme.wanted;
   char leaves[64] = "more than was measured", what[128] = "enough";
   PetscInt cells[2];
@@ -143,7 +134,9 @@ static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
 PetscErrorCode SceneReportGrid(Scene scene) {
   const PetscReal R0 = SceneSmallestRadius(scene), cells = R0 / FluidSpecCellSize(&scene->fluid);
   const PetscReal wanted = scene->scheme.wanted;
-  const PetscBool many = ShapeFewestMarkers(&scene->shape) >= MARKERS ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool many = PETSC_TRUE;
+  for (PetscInt v = 0; v < scene->shape.vesicles; v++)
+    if (scene->shape.start[v + 1] - scene->shape.start[v] < MARKERS) many = PETSC_FALSE;
   const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
   const PetscReal error = GridError(fluid, cells, many), enough = SceneCellsFor(fluid, wanted, many);
   char leaves[64] = "coarser than any that was measured", what[256] = "enough";

@@ -62,9 +62,10 @@ static const char *const solvers[] = {"-tension_ksp_type",   "-tension_ksp_rtol"
                                       "-coupled_ksp_max_it", "-coupled_ksp_monitor",      NULL};
 
 /* Prefixes of solvers, and what a scene needs to have them. */
-static const OptionOwner owners[] = {{"-tension_", "-scheme_type split"},   {"-bending_", "-scheme_type split"},
-                                     {"-coupled_", "-scheme_type coupled"}, {"-helmholtz_", "-helmholtz_type hypre"},
-                                     {"-poisson_", "-poisson_type hypre"},  {NULL, NULL}};
+static const OptionOwner owners[] = {
+    {"-tension_", "-scheme_type", "split"},   {"-bending_", "-scheme_type", "split"},
+    {"-coupled_", "-scheme_type", "coupled"}, {"-helmholtz_", "-helmholtz_type", "hypre"},
+    {"-poisson_", "-poisson_type", "hypre"},  {NULL, NULL, NULL}};
 
 PetscErrorCode SceneCheckUsed(Scene scene) {
   PetscFunctionBeginUser;

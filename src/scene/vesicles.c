@@ -67,7 +67,6 @@ static PetscBool VesicleIsWithin(void *context, PetscInt i, PetscInt j, const Pe
   const WithinSearch *w = (const WithinSearch *)context;
   const Shape *s = w->shape;
   const PetscInt within = j - s->vesicles;
-  (void)d;
   if (within < 0 || within == i || !ShapeHolds(s, i, s->X + 2 * s->start[within], w->period)) return PETSC_FALSE;
   w->pair[0] = PetscMin(i, within);
   w->pair[1] = PetscMax(i, within);
