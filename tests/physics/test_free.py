@@ -4,6 +4,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import ROOT, run_petves
+from restarts import agree
 
 RATE = 0.326116
 FREE = "-domain_bc_x free -domain_bc_y free -scheme_order 2 "
@@ -33,14 +34,7 @@ def test_tank_treading_is_that_of_the_boundary_integral(tmp_path):
 
 def test_ranks_and_restart(tmp_path):
     """Three vesicles, two outside of the window: the same on two ranks; a restart has the same bits."""
-    whole = run_petves(tmp_path / "whole", f"{THREE} -time_end 1").series
-    ranks = run_petves(tmp_path / "ranks", f"{THREE} -time_end 1", ranks=2).series
-    run_petves(tmp_path / "half", f"{THREE} -time_end .5")
-    checkpoint = tmp_path / "half" / "checkpoint.h5"
-    rest = run_petves(tmp_path / "rest", f"{THREE} -time_end 1 -restart {checkpoint}").series
-    for name in ("center_x_1", "inclination_2", "center_y_3", "frequency_3", "coupled_its"):
-        assert ranks[name] == pytest.approx(whole[name], rel=1e-9, abs=1e-12, nan_ok=True)  # no frequency at the start
-        assert np.array_equal(rest[name], whole[name][-len(rest[name]) :])
+    agree(tmp_path, THREE, 0.5, 1, ("center_x_1", "inclination_2", "center_y_3", "frequency_3", "coupled_its"), (2,))
 
 
 def fine(values, points):

@@ -5,7 +5,7 @@ import re
 
 import pytest
 from harness import run_petves
-from test_obstacles import PERIODIC, POST, STILL, agree, last
+from test_obstacles import PERIODIC, POST, STILL, agree_with_solids, last
 from restarts import at_step
 
 
@@ -50,7 +50,7 @@ def test_distant_posts(tmp_path):
 def test_direct_ranks_and_restart_with_modes(tmp_path):
     """A vesicle among posts whose block is taken apart: as test_direct_ranks_and_restart."""
     vesicle = "-vesicle_semi_axes .1,.2 -vesicle_markers 25 -vesicle_center 1,.6 -vesicle_bending .01"
-    agree(f"{lattice(3, 0.25, 0)} {vesicle} -obstacle_factor modes -time_step .02", 0.02, tmp_path)
+    agree_with_solids(tmp_path, f"{lattice(3, 0.25, 0)} {vesicle} -obstacle_factor modes -time_step .02", 0.02)
 
 
 def test_adaptive_steps_with_inertia(tmp_path):

@@ -9,7 +9,7 @@ import pytest
 from boundary_integral import driven
 from harness import ROOT, run_petves
 from restarts import frames
-from test_obstacles import PERIODIC, STILL, agree, last
+from test_obstacles import PERIODIC, STILL, agree_with_solids, last
 
 import petves
 from petves.views.window import Window
@@ -104,7 +104,7 @@ def test_direct_ranks_and_restart(tmp_path):
     body = ellipse(tmp_path, (1, 0.7), ["# velocity .6 .3", "# rotation 3"], (0.4, 0.27))
     options = f"{VESICLE} {body} -obstacle_frequency 4 -time_step .02 -output_every .02"
     options = options.replace("32,32", "24,24").replace("-vesicle_markers 41", "-vesicle_markers 31")
-    agree(options, 0.02, tmp_path)
+    agree_with_solids(tmp_path, options, 0.02)
     whole, rest = frames(tmp_path / "whole"), frames(tmp_path / "rest")
     for name in ("obstacle/markers", "obstacle/force", "vesicle/markers", "fluid/u"):
         np.testing.assert_array_equal(rest[name][-1], whole[name][-1])

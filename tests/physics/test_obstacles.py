@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from boundary_integral import finer, pressed, single_layer
 from harness import REFERENCES, ROOT, run_petves
+from restarts import agree
 from swinging_circle import swinging_torque
 
 import petves
@@ -181,18 +182,9 @@ def test_flow_with_inertia(tmp_path):
     assert series["obstacle_force_x"][1:] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
     assert series["pressure_drop"][1:] == pytest.approx(EXACT["drag"]["0.2"], rel=1e-5)
     assert series["flux"][1:] == pytest.approx(1, rel=1e-12)
-    short = f"{POST} -fluid_inertia unsteady -time_step .04"
-    tight, end = "-coupled_ksp_rtol 1e-11", "-time_end .12"
-    one = last(tmp_path / "one", f"{short} {tight} {end}")
-    run_petves(tmp_path / "half", f"{short} {tight} -time_end .08")
-    go_on = f"{tight} -restart {tmp_path / 'half' / 'checkpoint.h5'}"
-    for name, more, ranks, within in (
-        ("two", tight, 2, 1e-9),
-        ("rest", go_on, 1, 0),
-    ):
-        other = last(tmp_path / name, f"{short} {end} {more}", ranks)
-        for column in ("center_x", "gap", "obstacle_force_x", "obstacle_torque_1"):
-            assert other[column] == pytest.approx(one[column], rel=within, abs=1e-9 if within else 0)
+    columns = ("center_x", "gap", "obstacle_force_x", "obstacle_torque_1")
+    scene = f"{POST} -fluid_inertia unsteady -time_step .04 -coupled_ksp_rtol 1e-11"
+    agree(tmp_path, scene, 0.08, 0.12, columns, (2,), abs=1e-9)
 
 
 def test_drive_of_a_channel(tmp_path):
@@ -261,30 +253,40 @@ def test_lines_across_a_period(tmp_path):
     assert row["obstacle_force_x"] == pytest.approx(-1 / 0.4 - 1 / 0.6, rel=2e-5)
 
 
-def test_ranks_and_restart(tmp_path):
-    """A vesicle before a post: 1, 2 and 3 ranks agree; a restart has the same bits."""
-    agree(f"{POST} -time_step .04", 0.04, tmp_path)
+#: A vesicle before a post; among posts, so many that each has a preconditioner of its own; one that touches the bumps almost.
+PLACES = ",".join(f"{2 * i},{2.6 + 2.8 * j:g}" for i in range(4) for j in range(2)) + ",1,4,5,4"
+SHARED = {
+    "post": (f"{POST} -time_step .04", 0.04, (2, 3), ()),
+    "throat": (f"{THROAT} -flow_drive pressure -vesicle_semi_axes .45,.16 -vesicle_center 1.3,.5 -vesicle_bending .1 "
+               "-domain_cells 72,24 -time_step .003", 0.003, (2, 3), ()),
+    "many": (f"-vesicle_count 10 -vesicle_markers 35 -vesicle_area .8 -vesicle_reduced_area .8 -vesicle_angle 60 "
+             f"-vesicle_center {PLACES} {PERIODIC} -domain_box 0,8,0,8 -domain_cells 64,64 -flow_type uniform "
+             "-obstacle_shape posts -obstacle_radius .6 -obstacle_center 3,1,7,1 -vesicle_bending .05 -time_step .02",
+             0.02, (2,), ("obstacle_torque_2",)),
+}  # fmt: skip
 
 
-def test_ranks_and_restart_in_a_throat(tmp_path):
-    """The same of one that touches the bumps almost."""
-    vesicle = "-vesicle_semi_axes .45,.16 -vesicle_center 1.3,.5 -vesicle_bending .1 -domain_cells 72,24"
-    agree(f"{THROAT} -flow_drive pressure {vesicle} -time_step .003", 0.003, tmp_path)
+@pytest.mark.parametrize("name", SHARED)
+def test_ranks_and_restart(name, tmp_path):
+    """1, 2 and 3 ranks agree; a restart has the same bits."""
+    options, step, ranks, more = SHARED[name]
+    agree_with_solids(tmp_path, options, step, ranks, more)
 
 
-def agree(options, step, tmp_path):
-    """1, 2 and 3 ranks, and a run that is interrupted."""
-    short = f"{options} -time_end {3 * step}"
-    whole = run_petves(tmp_path / "whole", f"{short} -coupled_ksp_rtol 1e-11").series
-    for ranks in (2, 3):
-        other = run_petves(tmp_path / str(ranks), f"{short} -coupled_ksp_rtol 1e-11", ranks=ranks).series
-        for column in ("center_x", "gap", "obstacle_force_x", "pressure_drop"):
-            assert other[column] == pytest.approx(whole[column], rel=1e-9)
-    run_petves(tmp_path / "half", f"{options} -time_end {2 * step} -coupled_ksp_rtol 1e-11")
-    checkpoint = tmp_path / "half" / "checkpoint.h5"
-    rest = run_petves(tmp_path / "rest", f"{short} -coupled_ksp_rtol 1e-11 -restart {checkpoint}").series
-    for column in ("center_x", "obstacle_force_x", "obstacle_torque_1"):
-        assert rest[column][-1] == whole[column][-1]
+def agree_with_solids(folder, options, step, ranks=(2, 3), more=()):
+    """Three steps of vesicles among obstacles on some ranks, and interrupted after two."""
+    columns = ("center_x", "gap", "obstacle_force_x", "pressure_drop", *more)
+    options, near = f"{options} -coupled_ksp_rtol 1e-11", {"abs": 1e-9} if more else {}
+    agree(
+        folder,
+        options,
+        2 * step,
+        3 * step,
+        columns,
+        ranks,
+        ("center_x", "obstacle_force_x", "obstacle_torque_1"),
+        **near,
+    )
 
 
 def test_viscosity_contrast(tmp_path):
@@ -297,23 +299,6 @@ def test_viscosity_contrast(tmp_path):
         assert other[column] == pytest.approx(one[column], rel=1e-9)
     assert one["flux"] == pytest.approx(2, rel=1e-12)
     assert one["pressure_drop"] == pytest.approx(one["obstacle_force_x"] / 2, rel=1e-9)
-
-
-def test_many_vesicles_among_posts(tmp_path):
-    """So many that each has a preconditioner of its own: two ranks and a restart agree."""
-    places = ",".join(f"{2 * i},{2.6 + 2.8 * j:g}" for i in range(4) for j in range(2)) + ",1,4,5,4"
-    scene = f"-vesicle_count 10 -vesicle_markers 35 -vesicle_area .8 -vesicle_reduced_area .8 -vesicle_angle 60 -vesicle_center {places}"
-    scene += f" {PERIODIC} -domain_box 0,8,0,8 -domain_cells 64,64 -flow_type uniform -obstacle_shape posts"
-    scene += " -obstacle_radius .6 -obstacle_center 3,1,7,1 -vesicle_bending .05 "
-    scene += ""
-    scene += " -time_step .02 -coupled_ksp_rtol 1e-11"
-    one = last(tmp_path / "one", f"{scene} -time_end .06")
-    two = last(tmp_path / "two", f"{scene} -time_end .06", ranks=2)
-    run_petves(tmp_path / "half", f"{scene} -time_end .04")
-    rest = last(tmp_path / "rest", f"{scene} -time_end .06 -restart {tmp_path / 'half' / 'checkpoint.h5'}")
-    for column in ("center_x", "gap", "obstacle_force_x", "obstacle_torque_2"):
-        assert two[column] == pytest.approx(one[column], rel=1e-9, abs=1e-9)
-        assert rest[column] == one[column]
 
 
 def test_film_on_a_post(tmp_path):

@@ -15,14 +15,7 @@ APART = "-vesicle_center 0.8,2,2.7,2.4 "
 SEAM = "-vesicle_center 0.1,2,2.3,2.4 -contact_repulsion 20 -contact_repulsion_range 0.6 "
 
 
-@pytest.mark.parametrize(
-    "options, ranks",
-    [
-        (APART, 2),
-        (SEAM, 1),
-        (SEAM, 3),
-    ],
-)
+@pytest.mark.parametrize("options, ranks", [(APART, 2), (SEAM, 1), (SEAM, 3)])
 def test_walls_agree_with_stresslets(options, ranks, tmp_path):
     """To rounding; and with what Python makes of the saved markers and tensions, to the error of the step."""
     run = run_petves(tmp_path / "run", CHANNEL + options, ranks)

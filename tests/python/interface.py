@@ -175,10 +175,7 @@ def several():
 def mistakes():
     """Every mistake is a petves.Error with the program's line; a monitor's exception comes through."""
     bad = [
-        (
-            "-flow_rat 1: no such option; -flow_rate is meant?",
-            dict(flow_rat=1),
-        ),
+        ("-flow_rat 1: no such option; -flow_rate is meant?", dict(flow_rat=1)),
         ("square cells", dict(domain_cells=(32, 33))),
         ("-coupled_ksp_type foo: Unable to find", dict(coupled_ksp_type="foo")),
         ("beyond the wall x_max", dict(vesicle_center=(0.9, 0))),

@@ -14,10 +14,7 @@ import pytest
 from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, without_mpirun
 
 EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
-LEFT = {
-    "quick_start": "quick_start/shapes.png",
-    "restart": "halves/series.csv",
-}
+LEFT = {"quick_start": "quick_start/shapes.png", "restart": "halves/series.csv"}
 RUN = (
     "import petves\n"
     "with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_end=0.01) as sim:\n"

@@ -104,7 +104,7 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
             "claim.csv",
             "relax_seconds.png",
             "relax_solves.png",
-        ),
+        )
     }
     assert all(p.stat().st_size for p in paths)
     with (tmp_path / "chart.csv").open(newline="") as file:

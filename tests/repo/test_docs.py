@@ -50,10 +50,7 @@ def test_links_lead_somewhere():
 def test_a_broken_link_is_found():
     page = ROOT / "docs" / "index.md"
     text = "[a](options.md) [b](nowhere.md) [c](options.md#units) [d](options.md#none) `[e](code.md)`\n"
-    assert broken(page, text) == [
-        "index.md: nowhere.md: no such file",
-        "index.md: options.md#none: no such heading",
-    ]
+    assert broken(page, text) == ["index.md: nowhere.md: no such file", "index.md: options.md#none: no such heading"]
 
 
 def has_heading(page: str, words: str) -> bool:

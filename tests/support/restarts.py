@@ -4,7 +4,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from harness import COLUMNS
+import pytest
+from harness import COLUMNS, run_petves
 
 BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
 TWO = (
@@ -62,3 +63,24 @@ def at_step(folder: Path, step: int) -> str:
             if file.attrs["step"] == step:
                 return path.name
     raise AssertionError(f"no checkpoint of step {step} in {folder}")
+
+
+def agree(folder: Path, options: str, half: float, end: float, names, ranks=(2, 3), exact=None, **near) -> dict:
+    """Columns of other numbers of ranks are near, those of a run that goes on from `half` have the same bits (`exact`, or the
+    same columns). Returns the runs "whole", of the ranks, "half" and "rest"."""
+    found = {}
+
+    def run(name, until, n=1, more=""):
+        found[name] = run_petves(folder / str(name), f"{options} -time_end {until:g} {more}", n)
+        return found[name].series
+
+    whole = run("whole", end)
+    for n in ranks:
+        other = run(n, end, n)
+        for name in names:
+            assert other[name] == pytest.approx(whole[name], **{"rel": 1e-9, "nan_ok": True, **near}), (name, n)
+    run("half", half)
+    rest = run("rest", end, 1, f"-restart {folder / 'half' / 'checkpoint.h5'}")
+    for name in exact or names:
+        np.testing.assert_array_equal(rest[name], whole[name][-len(rest[name]) :], err_msg=name)
+    return found
