@@ -28,7 +28,8 @@ PETSC_EXTERN PetscErrorCode ShapeDestroy(Shape *shape);
 PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 
 /* ShapeMiddle - the mean of the markers of curve v. ShapeHolds - whether the point X, or one of its images,
-   lies within the polygon of curve v, which is no longer than a period (0: none). Not collective. */
+   lies within the polygon of curve v, which is no longer than a period (0: none); FALSE where the curve spans a period.
+   Not collective. */
 PETSC_EXTERN void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]);
 PETSC_EXTERN PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal X[2], const PetscReal period[2]);
 

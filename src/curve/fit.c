@@ -16,7 +16,6 @@
 typedef struct {
   PetscInt M;
   PetscReal *edge;             /* [M] d of the edges */
-  PetscReal *central;          /* [M] d of the antisymmetric derivative by differences */
   PetscReal *products;         /* [M + CIRCULANT_PADDING] (D D^T)_kl as a function of k - l */
   PetscReal *e, *a, *z, *work; /* [2M + CIRCULANT_PADDING] e, a, z, work */
   PetscReal *twice;            /* [4M + CIRCULANT_PADDING] an argument of D two times */
@@ -31,15 +30,6 @@ static void FitSpectralDerivative(PetscInt M, PetscReal d[]) {
     d[j] = 2 * j == M ? 0 : PETSC_PI / M * (j % 2 ? -1 : 1) / (M % 2 ? PetscSinReal(x) : PetscTanReal(x));
     d[M - j] = -d[j];
   }
-}
-
-/* d of half the difference of a marker's neighbours or, with chord, of the difference between a marker and the one
-   before. */
-static void FitDifference(PetscInt M, PetscBool chord, PetscReal d[]) {
-  (void)PetscArrayzero(d, M);
-  d[0] = chord ? 1 : 0;
-  d[1] = chord ? -1 : -0.5;
-  if (!chord) d[M - 1] = 0.5;
 }
 
 /* out = D x or, if transposed, D^T x, of `each` numbers a marker. */
@@ -103,22 +93,18 @@ static PetscErrorCode FitCreate(PetscInt M, PetscBool spectral, Fit *f) {
   const PetscInt room = 2 * M + CIRCULANT_PADDING;
   PetscFunctionBeginUser;
   f->M = M;
-  PetscCall(PetscMalloc7(M, &f->edge, M, &f->central, room, &f->products, room, &f->e, room, &f->a, room, &f->z, room,
-                         &f->work));
+  PetscCall(PetscCalloc6(M, &f->edge, room, &f->products, room, &f->e, room, &f->a, room, &f->z, room, &f->work));
   PetscCall(PetscMalloc3(2 * room, &f->twice, M + 1, &f->r, (M + 1) * (M + 1), &f->CC));
-  if (spectral)
-    FitSpectralDerivative(M, f->edge);
-  else {
-    FitDifference(M, PETSC_TRUE, f->edge);
-    FitDifference(M, PETSC_FALSE, f->central);
-  }
+  f->edge[0] = 1; /* chords, each from the marker before */
+  f->edge[1] = -1;
+  if (spectral) FitSpectralDerivative(M, f->edge);
   FitMultiply(f, f->edge, 1, PETSC_TRUE, f->edge, f->products); /* SUM_q d_q d_{q + j}, even in j */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode FitDestroy(Fit *f) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree7(f->edge, f->central, f->products, f->e, f->a, f->z, f->work));
+  PetscCall(PetscFree6(f->edge, f->products, f->e, f->a, f->z, f->work));
   PetscCall(PetscFree3(f->twice, f->r, f->CC));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,7 +118,7 @@ PetscErrorCode CurveFit(PetscInt M, PetscBool spectral, PetscReal length, PetscR
     PetscBool solved = PETSC_FALSE;
     FitMultiply(&f, f.edge, 2, PETSC_FALSE, X, f.e);
     const PetscReal *a = spectral ? f.e : f.a;
-    if (!spectral) FitMultiply(&f, f.central, 2, PETSC_FALSE, X, f.a);
+    for (PetscInt k = 0; k < 2 * M && !spectral; k++) f.a[k] = 0.5 * (f.e[k] + f.e[(k + 2) % (2 * M)]);
     *left = FitResidual(M, X, length / M, area, f.e, a, f.r);
     if (it == most || *left < FIT_CONVERGED) break;
     for (PetscInt k = 0; k < M; k++) {

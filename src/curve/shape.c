@@ -44,6 +44,7 @@ PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal point[2], c
   const PetscReal *X = shape->X + 2 * shape->start[v];
   PetscReal box[4] = CURVE_NOWHERE, at[2];
   PetscBool inside = PETSC_FALSE;
+  if (shape->kind && shape->kind[v].type == CURVE_SPANNING) return PETSC_FALSE;
   CurveBounds(M, X, box);
   for (int d = 0; d < 2; d++) {
     const PetscReal off = point[d] - 0.5 * (box[2 * d] + box[2 * d + 1]);

@@ -166,7 +166,8 @@ static PetscErrorCode AutoNumber(const char format[], PetscReal number, char val
 }
 
 static PetscErrorCode SuggestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
-  const PetscReal time = SceneFastestTime(s);
+  const PetscReal rate = FlowShearRate(&s->flow), rest = SceneRestTime(s),
+                  time = rate > 0 ? PetscMin(rest, 1 / rate) : rest;
   const PetscBool timed = time < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
   (void)snprintf(why, AUTO_TEXT, timed ? "a twentieth of the fastest time of the scene" : "the default");
   return AutoNumber("%.6g", timed ? 0.05 * time : time, value);

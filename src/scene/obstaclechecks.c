@@ -55,11 +55,6 @@ static PetscErrorCode ObstacleCheckPlace(Scene scene, PetscInt b) {
 }
 /* clang-format on */
 
-/* TRUE if curve b, or an image of it, holds the point; a spanning curve holds no point. */
-static PetscBool ObstacleHolds(const Shape *s, PetscInt b, const PetscReal X[2], const PetscReal period[2]) {
-  return s->kind && s->kind[b].type == CURVE_SPANNING ? PETSC_FALSE : ShapeHolds(s, b, X, period);
-}
-
 /* The spanning curve that a ray from X, upwards (1) or downwards (-1) in direction d, meets first and whose solid is
    towards X, or -1. Curves are looked at over their own period and its neighbours. */
 static PetscInt ObstacleSolidAlong(const Shape *s, int d, int up, const PetscReal X[2], const PetscReal period[2]) {
@@ -88,7 +83,7 @@ static PetscInt ObstacleSolidAlong(const Shape *s, int d, int up, const PetscRea
 static PetscInt ObstacleHolder(const SceneObstacles *own, PetscInt self, const PetscReal X[2],
                                const PetscReal period[2]) {
   for (PetscInt b = 0; b < own->outline.vesicles; b++)
-    if (b != self && own->container[b] && ObstacleHolds(&own->outline, b, X, period)) return b;
+    if (b != self && own->container[b] && ShapeHolds(&own->outline, b, X, period)) return b;
   return -1;
 }
 
@@ -100,9 +95,7 @@ static PetscInt ObstacleSolidAt(const SceneObstacles *own, PetscInt self, const 
   const PetscInt holder = ObstacleHolder(own, self, X, period);
   for (PetscInt b = 0; b < s->vesicles; b++) {
     if (b == self) continue;
-    if (!own->container[b]                  ? ObstacleHolds(s, b, X, period)
-        : self >= 0 && own->container[self] ? b == holder
-                                            : holder < 0)
+    if (!own->container[b] ? ShapeHolds(s, b, X, period) : self >= 0 && own->container[self] ? b == holder : holder < 0)
       return b;
   }
   for (int ray = 0; ray < 4 && (self < 0 || s->kind[self].type == CURVE_CLOSED); ray++) {
@@ -141,7 +134,7 @@ static void ObstaclesFindAround(const Shape *vesicles, const PetscReal period[2]
     own->holder[vesicles->vesicles + b] = ObstacleHolder(own, b, s->X + 2 * s->start[b], period);
     own->vesicle[b] = -1;
     for (PetscInt v = 0; v < vesicles->vesicles; v++)
-      if (ObstacleHolds(vesicles, v, s->X + 2 * s->start[b], period)) own->vesicle[b] = v;
+      if (ShapeHolds(vesicles, v, s->X + 2 * s->start[b], period)) own->vesicle[b] = v;
   }
 }
 

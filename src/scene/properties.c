@@ -84,11 +84,6 @@ PetscReal SceneRestTime(Scene scene) {
   return time;
 }
 
-PetscReal SceneFastestTime(Scene scene) {
-  const PetscReal rate = FlowShearRate(&scene->flow), rest = SceneRestTime(scene);
-  return rate > 0 ? PetscMin(rest, 1 / rate) : rest;
-}
-
 /* From here on the largest step falls more slowly than 1/chi: 0.125 over the rate at chi = 1000. */
 #define MOST_CHI 250
 

@@ -38,14 +38,12 @@ PETSC_EXTERN PetscBool SceneHasAreaTarget(Scene scene);
 PETSC_EXTERN PetscBool SceneHasBoxPart(Scene scene);
 
 /* SceneSmallestRadius, SceneLargestRadius - R0 of a vesicle (length). SceneMembraneTime - nu R0^3/c_b of vesicle v;
-   PETSC_MAX_REAL without bending. SceneRestTime - the least nu R0^3/c_b of a vesicle. SceneFastestTime - the
-   least of it and the flow's; PETSC_MAX_REAL: none. SceneFlowStep - up to which -time_adapt error
-   lets steps grow in a flow when nothing changes (time): 1/(rate (1 + 0.03 chi)), which fixed steps from an ellipse
-   still bear (docs/time.md), chi = rate nu R0^3/c_b of the softest vesicle, at most 250; PETSC_MAX_REAL without a known
-   rate. Not collective. */
+   PETSC_MAX_REAL without bending. SceneRestTime - the least nu R0^3/c_b of a vesicle. SceneFlowStep - up to which
+   -time_adapt error lets steps grow in a flow when nothing changes (time): 1/(rate (1 + 0.03 chi)), which fixed steps
+   from an ellipse still bear (docs/time.md), chi = rate nu R0^3/c_b of the softest vesicle, at most 250; PETSC_MAX_REAL
+   without a known rate. Not collective. */
 PETSC_EXTERN PetscReal SceneSmallestRadius(Scene scene);
 PETSC_EXTERN PetscReal SceneLargestRadius(Scene scene);
 PETSC_EXTERN PetscReal SceneMembraneTime(Scene scene, PetscInt v);
 PETSC_EXTERN PetscReal SceneRestTime(Scene scene);
-PETSC_EXTERN PetscReal SceneFastestTime(Scene scene);
 PETSC_EXTERN PetscReal SceneFlowStep(Scene scene);
