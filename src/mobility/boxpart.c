@@ -1,7 +1,6 @@
 #include "mobility/boxpart.h"
 #include "base/lanes.h"
-
-#define AT_ONCE 64 /* markers */
+#include "numerics/blas.h"
 
 PetscErrorCode BoxPartCreate(const FluidSpec *spec, Markers markers, const BoxLattice *lattice, BoxPart *out) {
   BoxPart b;
@@ -23,7 +22,7 @@ PetscErrorCode BoxPartDestroy(BoxPart *box) {
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < 2; k++) PetscCall(BoxTableDestroy(&b->table[k]));
-  PetscCall(PetscFree3(b->value, b->function, b->amplitude));
+  PetscCall(PetscFree5(b->value[0], b->value[1], b->product, b->function, b->amplitude));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,21 +62,11 @@ static PetscErrorCode BoxPartTakeTable(BoxPart b) {
   }
   if (b->at == t) PetscFunctionReturn(PETSC_SUCCESS);
   b->at = t;
-  b->width = (t->functions[1] + LANES - 1) / LANES * LANES;
-  PetscCall(PetscFree3(b->value, b->function, b->amplitude));
-  PetscCall(PetscCalloc3(b->markers->layout->n * (t->functions[0] + b->width), &b->value,
-                         t->components * t->functions[0] * b->width, &b->function, t->rank, &b->amplitude));
+  const PetscInt n = b->markers->layout->n, nx = t->functions[0], ny = t->functions[1];
+  PetscCall(PetscFree5(b->value[0], b->value[1], b->product, b->function, b->amplitude));
+  PetscCall(PetscMalloc5(nx * n, &b->value[0], ny * n, &b->value[1], t->parts * nx * n, &b->product,
+                         t->components * nx * ny, &b->function, t->rank, &b->amplitude));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Own marker k's values of the functions of x, with the part of D that it has; those of y come behind. */
-static PetscReal *BoxValues(BoxPart b, PetscInt k) {
-  return b->value + k * (b->at->functions[0] + b->width);
-}
-
-/* A component's functions. */
-static PetscReal *BoxFunctions(BoxPart b, int component) {
-  return b->function + component * b->at->functions[0] * b->width;
 }
 
 PetscErrorCode BoxPartPlace(BoxPart b) {
@@ -85,74 +74,45 @@ PetscErrorCode BoxPartPlace(BoxPart b) {
   PetscFunctionBeginUser;
   PetscCall(BoxPartTakeTable(b));
   for (PetscInt k = 0; k < l->n; k++) {
-    const PetscReal *X = b->markers->X + 2 * (l->first + k), fade = Fade(b, X);
-    PetscReal *value = BoxValues(b, k);
-    BoxTableFunctions(b->at, 0, X[0], value);
-    BoxTableFunctions(b->at, 1, X[1], value + b->at->functions[0]);
-    for (PetscInt i = 0; i < b->at->functions[0]; i++) value[i] *= fade;
+    const PetscReal *X = b->markers->X + 2 * (l->first + k), part[2] = {Fade(b, X), 1};
+    for (int d = 0; d < 2; d++) {
+      PetscReal value[BOX_PLACES];
+      BoxTableFunctions(b->at, d, X[d], value);
+      for (PetscInt i = 0; i < b->at->functions[d]; i++) b->value[d][i * l->n + k] = part[d] * value[i];
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A component's functions += the parts of markers k .. k + count - 1, in `vectors` columns of vectors from the j-th
-   number on. The sums stay in registers. */
-static inline void GatherColumns(const int vectors, BoxPart b, int component, PetscInt k, PetscInt count, PetscInt j,
-                                 const PetscReal part[]) {
-  const PetscInt nx = b->at->functions[0], size = nx + b->width;
-  PetscReal *f = BoxFunctions(b, component) + j;
-  for (PetscInt i = 0; i < nx; i++, f += b->width) {
-    const PetscReal *x = BoxValues(b, k) + i, *y = BoxValues(b, k) + nx + j;
-    Lanes sum[4];
-    for (int q = 0; q < vectors; q++) sum[q] = LanesAt(f + q * LANES);
-    for (PetscInt m = 0; m < count; m++, x += size, y += size) {
-      const PetscReal scale = part[m] * x[0];
-      for (int q = 0; q < vectors; q++) sum[q] += scale * LanesAt(y + q * LANES);
-    }
-    for (int q = 0; q < vectors; q++) LanesPut(sum[q], f + q * LANES);
-  }
+/* A component's functions. */
+static PetscReal *BoxFunctions(BoxPart b, int component) {
+  return b->function + component * b->at->functions[0] * b->at->functions[1];
 }
 
 /* The own markers' sources in the functions. */
-static void BoxGather(BoxPart b, const PetscReal F[]) {
-  const PetscInt n = b->markers->layout->n, parts = b->at->parts;
-  PetscReal part[AT_ONCE];
-  (void)PetscArrayzero(BoxFunctions(b, b->at->source), parts * b->at->functions[0] * b->width);
-  for (PetscInt k = 0; k < n; k += AT_ONCE)
-    for (int c = 0; c < parts; c++) {
-      const PetscInt count = PetscMin(AT_ONCE, n - k);
-      PetscInt j = 0;
-      for (PetscInt m = 0; m < count; m++) part[m] = F[parts * (k + m) + c];
-      for (; j + 4 * LANES <= b->width; j += 4 * LANES) GatherColumns(4, b, b->at->source + c, k, count, j, part);
-      for (; j < b->width; j += LANES) GatherColumns(1, b, b->at->source + c, k, count, j, part);
-    }
+static PetscErrorCode BoxGather(BoxPart b, const PetscReal F[]) {
+  const PetscInt n = b->markers->layout->n, nx = b->at->functions[0], parts = b->at->parts;
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < parts * nx; i++)
+    for (PetscInt k = 0; k < n; k++) b->product[i * n + k] = F[parts * k + i / nx] * b->value[0][i % nx * n + k];
+  PetscCall(DenseProduct(PETSC_TRUE, b->at->functions[1], parts * nx, n, b->value[1], b->product,
+                         BoxFunctions(b, b->at->source)));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SUM x_i SUM f_ij y_j over `vectors` columns of vectors, at most 4. */
-static inline Lanes ScatterColumns(const int vectors, PetscInt nx, PetscInt width, const PetscReal x[],
-                                   const PetscReal y[], const PetscReal f[]) {
-  Lanes column[4], sum[4] = {{0}, {0}, {0}, {0}};
-  for (int q = 0; q < vectors; q++) column[q] = LanesAt(y + q * LANES);
-  for (PetscInt i = 0; i < nx; i++, f += width)
-    for (int q = 0; q < vectors; q++) sum[q] += x[i] * LanesAt(f + q * LANES);
-  for (int q = 0; q < vectors; q++) sum[q] *= column[q];
-  for (int q = 1; q < vectors; q++) sum[0] += sum[q];
-  return sum[0];
-}
-
-/* Velocity component c of own marker k. */
-static PetscReal BoxScatter(BoxPart b, PetscInt k, int c) {
-  const PetscInt nx = b->at->functions[0];
-  const PetscReal *x = BoxValues(b, k), *y = x + nx, *f = BoxFunctions(b, c);
-  PetscInt j = 0;
-  Lanes sum = {0};
-  for (; j + 4 * LANES <= b->width; j += 4 * LANES) sum += ScatterColumns(4, nx, b->width, x, y + j, f + j);
-  for (; j < b->width; j += LANES) sum += ScatterColumns(1, nx, b->width, x, y + j, f + j);
-  return LanesSum(sum);
+/* U += what the functions of the velocity are at the own markers. */
+static PetscErrorCode BoxScatter(BoxPart b, PetscScalar U[]) {
+  const PetscInt n = b->markers->layout->n, nx = b->at->functions[0];
+  PetscFunctionBeginUser;
+  PetscCall(DenseProduct(PETSC_FALSE, n, 2 * nx, b->at->functions[1], b->value[1], b->function, b->product));
+  for (PetscInt i = 0; i < 2 * nx; i++)
+    for (PetscInt k = 0; k < n; k++) U[2 * k + i / nx] += b->value[0][i % nx * n + k] * b->product[i * n + k];
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Where component c's functions of a block begin. */
 static PetscReal *InBlock(BoxPart b, const BoxBlock *q, int c) {
-  return BoxFunctions(b, c) + q->first[c][0] * b->width + q->first[c][1];
+  return BoxFunctions(b, c) + q->first[c][0] * b->at->functions[1] + q->first[c][1];
 }
 
 /* A block's eigenvectors' amplitudes of the sources' functions. */
@@ -160,7 +120,7 @@ static void ToAmplitudes(BoxPart b, const BoxBlock *q) {
   PetscReal weight[DIPOLE_COUNT * BOX_BLOCK_FUNCTIONS], *w = weight;
   for (int c = b->at->source; c < b->at->components; c++)
     for (PetscInt i = 0; i < q->n[0]; i++)
-      for (PetscInt j = 0; j < q->n[1]; j++) *w++ = InBlock(b, q, c)[i * b->width + j];
+      for (PetscInt j = 0; j < q->n[1]; j++) *w++ = InBlock(b, q, c)[i * b->at->functions[1] + j];
   BoxBlockSum(q, b->at->source, b->at->parts, weight, b->amplitude + q->start);
 }
 
@@ -170,21 +130,21 @@ static void FromAmplitudes(BoxPart b, const BoxBlock *q) {
   for (int c = 0; c < 2; c++)
     for (PetscInt i = 0; i < q->n[0]; i++)
       for (PetscInt j = 0; j < q->n[1]; j++, Q += q->modes)
-        InBlock(b, q, c)[i * b->width + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
+        InBlock(b, q, c)[i * b->at->functions[1] + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
 }
 
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const BoxTable *t = b->at;
   const Layout l = b->markers->layout;
   PetscFunctionBeginUser;
-  BoxGather(b, F);
+  PetscCall(BoxGather(b, F));
   for (PetscInt k = 0; k < t->blocks; k++) ToAmplitudes(b, &t->block[k]);
   if (l->size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)t->rank, MPIU_REAL, MPI_SUM, l->comm));
   for (PetscInt m = 0; m < t->rank; m++) b->amplitude[m] *= alpha * t->l[m];
-  PetscCall(PetscArrayzero(b->function, 2 * t->functions[0] * b->width)); /* those of no block too */
+  PetscCall(PetscArrayzero(b->function, 2 * t->functions[0] * t->functions[1])); /* those of no block too */
   for (PetscInt k = 0; k < t->blocks; k++) FromAmplitudes(b, &t->block[k]);
-  for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += BoxScatter(b, k / 2, k % 2);
+  PetscCall(BoxScatter(b, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -22,9 +22,9 @@ struct _p_BoxPart {
   PetscBool ramp;       /* unsteady flow: D of forces fades next to walls */
   BoxTable table[2];    /* table of all the box, and of its middle half; each is made when it is first needed */
   const BoxTable *at;   /* the table in use, of which the rest is */
-  PetscInt width;       /* functions of y, filled up with zeros to whole vectors */
-  PetscReal *value;     /* [n][functions of x + width] of the own markers */
-  PetscReal *function;  /* [components][functions of x][width] work */
+  PetscReal *value[2];  /* [functions of x or y][n] at the own markers */
+  PetscReal *product;   /* [parts][functions of x][n] work: these times a source or a velocity's functions of y */
+  PetscReal *function;  /* [components][functions of x][functions of y] work */
   PetscReal *amplitude; /* [rank] work */
   PetscLogEvent make;
 };

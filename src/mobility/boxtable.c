@@ -1,4 +1,5 @@
 #include "mobility/boxtable.h"
+#include "base/lanes.h"
 #include "numerics/blas.h"
 
 #define WALL_MARGIN 0.5 /* cells of the coarser grid between the places and a wall */
@@ -306,4 +307,37 @@ PetscErrorCode BoxTableDestroy(BoxTable *t) {
   PetscCall(PetscFree(t->block));
   PetscCall(PetscFree(t->l));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void BoxBlockSum(const BoxBlock *q, int first, int components, const PetscReal weight[], PetscReal a[]) {
+  const PetscInt functions = q->n[0] * q->n[1];
+  const PetscReal *Q = q->Q + first * functions * q->modes;
+  (void)PetscArrayzero(a, q->modes);
+  for (PetscInt f = 0; f < components * functions; f++, Q += q->modes)
+    for (PetscInt m = 0; m < q->modes; m++) a[m] += weight[f] * Q[m];
+}
+
+void BoxTableRows(const BoxTable *t, const PetscReal X[2], PetscReal part, int first, int count, PetscReal rows[]) {
+  PetscReal vx[BOX_PLACES], vy[BOX_PLACES], weight[BOX_BLOCK_FUNCTIONS];
+  (void)PetscArrayzero(rows, count * t->rank);
+  if (part == 0) return;
+  BoxTableFunctions(t, 0, X[0], vx);
+  BoxTableFunctions(t, 1, X[1], vy);
+  for (PetscInt q = 0; q < t->blocks; q++)
+    for (int c = 0; c < count; c++) {
+      const BoxBlock *b = &t->block[q];
+      const PetscReal *fx = vx + b->first[first + c][0], *fy = vy + b->first[first + c][1];
+      for (PetscInt i = 0; i < b->n[0]; i++)
+        for (PetscInt j = 0; j < b->n[1]; j++) weight[i * b->n[1] + j] = part * fx[i] * fy[j];
+      BoxBlockSum(b, first + c, 1, weight, rows + c * t->rank + b->start);
+    }
+}
+
+PetscReal BoxProduct(PetscInt r, const PetscReal l[], const PetscReal x[], const PetscReal y[]) {
+  Lanes sum = {0};
+  PetscReal rest = 0;
+  PetscInt m = 0;
+  for (; m + LANES <= r; m += LANES) sum += LanesAt(l + m) * (LanesAt(x + m) * LanesAt(y + m));
+  for (; m < r; m++) rest += l[m] * (x[m] * y[m]);
+  return LanesSum(sum) + rest;
 }
