@@ -91,11 +91,8 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(UnknownsCreate(coupling, &s->unknowns));
   PetscCall(ReducedCreate(s->unknowns, &s->reduced));
   PetscCall(UnknownsCreateVec(s->unknowns, &s->x));
-  PetscCall(VecDuplicate(s->x, &s->b));
-  PetscCall(VecDuplicate(s->x, &s->change));
-  PetscCall(VecDuplicate(s->x, &s->pending));
-  PetscCall(VecDuplicate(s->x, &s->trial.x));
-  PetscCall(VecDuplicate(s->x, &s->trial.b));
+  Vec *others[] = {&s->b, &s->change, &s->pending, &s->trial.x, &s->trial.b};
+  for (int k = 0; k < 5; k++) PetscCall(VecDuplicate(s->x, others[k]));
   PetscCall(VecGetLocalSize(s->x, &n));
   PetscCall(VecGetSize(s->x, &N));
   PetscCall(MatCreateShell(coupling->fluid->grid->comm, n, n, N, N, s, &s->A));
@@ -109,12 +106,8 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPDestroy(&s->ksp));
-  PetscCall(VecDestroy(&s->x));
-  PetscCall(VecDestroy(&s->b));
-  PetscCall(VecDestroy(&s->change));
-  PetscCall(VecDestroy(&s->pending));
-  PetscCall(VecDestroy(&s->trial.x));
-  PetscCall(VecDestroy(&s->trial.b));
+  Vec *all[] = {&s->x, &s->b, &s->change, &s->pending, &s->trial.x, &s->trial.b};
+  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(MatDestroy(&s->A));
   PetscCall(PreconditionerDestroy(&s->preconditioner));
   PetscCall(ReducedDestroy(&s->reduced));

@@ -29,7 +29,7 @@ PetscErrorCode MeanMobilityCreate(const FluidSpec *spec, Coupling c, PetscReal r
 PetscErrorCode MeanMobilityDestroy(MeanMobility *mobility) {
   PetscFunctionBeginUser;
   if (!*mobility) PetscFunctionReturn(PETSC_SUCCESS);
-  if ((*mobility)->table) PetscCall(MobilityTableDestroy(&(*mobility)->table));
+  PetscCall(MobilityTableDestroy(&(*mobility)->table));
   PetscCall(BoxPartDestroy(&(*mobility)->box));
   PetscCall(PetscFree((*mobility)->stencil));
   PetscCall(PetscFree(*mobility));

@@ -6,7 +6,9 @@
 
 typedef struct {
   TestWorld world;
-  PetscReal *D; /* [2M][2M] */
+  PetscReal *D;              /* [2M][2M] */
+  PetscReal *normal, *force; /* [2M] */
+  PetscReal *U[2];           /* [2M] velocities without and with D */
 } World;
 
 /* D of all markers, on every rank. */
@@ -16,6 +18,25 @@ static PetscErrorCode AddAll(BoxPart box, Layout l, PetscReal D[]) {
   PetscCall(BoxPartAdd(box, 1, &all, &all, D));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, D, (PetscMPIInt)(4 * l->M * l->M), MPIU_REAL, MPI_SUM, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Normals of unit size in all, and the forces c + k (1, 2) of the cosines of the markers' numbers. */
+static void SetVectors(World *w) {
+  const PetscInt M = w->world.layout->M;
+  const PetscReal *X = w->world.coupling->markers->X;
+  PetscReal *normal = w->normal, *force = w->force, size = 0;
+  for (PetscInt v = 0; v < w->world.layout->bodies; v++) {
+    const PetscInt first = w->world.layout->start[v], n = LayoutCount(w->world.layout, v);
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt next = first + (k + 1) % n, before = first + (k + n - 1) % n, at = first + k;
+      normal[2 * at] = X[2 * next + 1] - X[2 * before + 1];
+      normal[2 * at + 1] = X[2 * before] - X[2 * next];
+      force[2 * at] = PetscCosReal(2 * PETSC_PI * k / n) + 0.3 * PetscSinReal(4 * PETSC_PI * k / n);
+      force[2 * at + 1] = 0.5 * PetscSinReal(2 * PETSC_PI * k / n) - 0.2 * PetscCosReal(6 * PETSC_PI * k / n);
+    }
+  }
+  for (PetscInt k = 0; k < 2 * M; k++) size += PetscSqr(normal[k]);
+  for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= PetscSqrtReal(size);
 }
 
 static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBool box, World *w) {
@@ -31,14 +52,16 @@ static PetscErrorCode WorldCreate(const char options[], PetscInt cells, PetscBoo
           .kernel = world->scene->coupling.kernel, .near = NEAR_EXACT, .spec = &world->scene->fluid, .box_part = box}};
   PetscCall(TestWorldBuildFor(&setting, world));
   PetscCall(TestWorldPlace(world->fluid->a0, world));
-  PetscCall(PetscCalloc1(PetscSqr(2 * world->layout->M), &w->D));
+  const PetscInt n = 2 * world->layout->M;
+  PetscCall(PetscCalloc5(n * n, &w->D, n, &w->normal, n, &w->force, n, &w->U[0], n, &w->U[1]));
+  SetVectors(w);
   if (box) PetscCall(AddAll(world->coupling->mobility->near->box, world->layout, w->D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode WorldDestroy(World *w) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(w->D));
+  PetscCall(PetscFree5(w->D, w->normal, w->force, w->U[0], w->U[1]));
   PetscCall(TestWorldDestroy(&w->world));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,43 +93,20 @@ static PetscReal Asymmetry(World *w) {
   return most;
 }
 
-/* Normals of unit size in all, and the forces c + k (1, 2) of the cosines of the markers' numbers. */
-static void Vectors(World *w, PetscReal normal[], PetscReal force[]) {
-  const PetscInt M = w->world.layout->M;
-  const PetscReal *X = w->world.coupling->markers->X;
-  PetscReal size = 0;
-  for (PetscInt v = 0; v < w->world.layout->bodies; v++) {
-    const PetscInt first = w->world.layout->start[v], n = LayoutCount(w->world.layout, v);
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscInt next = first + (k + 1) % n, before = first + (k + n - 1) % n, at = first + k;
-      normal[2 * at] = X[2 * next + 1] - X[2 * before + 1];
-      normal[2 * at + 1] = X[2 * before] - X[2 * next];
-      force[2 * at] = PetscCosReal(2 * PETSC_PI * k / n) + 0.3 * PetscSinReal(4 * PETSC_PI * k / n);
-      force[2 * at + 1] = 0.5 * PetscSinReal(2 * PETSC_PI * k / n) - 0.2 * PetscCosReal(6 * PETSC_PI * k / n);
-    }
-  }
-  for (PetscInt k = 0; k < 2 * M; k++) size += PetscSqr(normal[k]);
-  for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= PetscSqrtReal(size);
-}
-
 /* The table itself: the same markers on a grid and on one twice as fine. At walls n.D n is minus what the images leave;
    over a period the flux is that of C + D. */
 static PetscErrorCode CheckTable(const char name[], const char options[], PetscBool walls) {
-  PetscReal *normal, *force, off;
   World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) PetscCall(WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]));
-  PetscCall(PetscMalloc2(2 * w[0].world.layout->M, &normal, 2 * w[0].world.layout->M, &force));
   for (int k = 0; k < 2; k++) {
     CHECK(Asymmetry(&w[k]) == 0, "%s: D is symmetric to the bit, rank %d", name,
           (int)w[k].world.coupling->mobility->near->box->at->rank);
-    Vectors(&w[k], normal, force);
-    const PetscReal flux = Form(&w[k], normal, normal);
+    const PetscReal flux = Form(&w[k], w[k].normal, w[k].normal);
     if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
   }
-  off = OffBy(&w[0], &w[1], 4);
+  const PetscReal off = OffBy(&w[0], &w[1], 4);
   CHECK(off < (walls ? 0.05 : 0.03), "%s: D at h is 4 D at h/2 but for %.4f", name, off);
-  PetscCall(PetscFree2(normal, force));
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -123,8 +123,8 @@ static PetscErrorCode CheckUnlike(const char own[], const char unlike[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U[2M] = (E A^-1 E^T/h^2 + C + D) F where the Stokes solve is exact; D or not. */
-static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part, PetscReal all[]) {
+/* U = (E A^-1 E^T/h^2 + C + D) F where the Stokes solve is exact; D or not. */
+static PetscErrorCode Velocity(World *w, int part) {
   const NearField near = w->world.coupling->mobility->near;
   const BoxPart box = near->box;
   Stokes stokes;
@@ -134,12 +134,12 @@ static PetscErrorCode Velocity(World *w, const PetscReal force[], PetscBool part
   PetscCall(TestMarkerVecs(w->world.layout, 2, &F, &U, NULL));
   PetscCall(StokesCreate(w->world.fluid, &stokes));
   PetscCall(VecGetArray(F, &f));
-  PetscCall(PetscArraycpy(f, force + 2 * w->world.layout->first, 2 * w->world.layout->n));
+  PetscCall(PetscArraycpy(f, w->force + 2 * w->world.layout->first, 2 * w->world.layout->n));
   PetscCall(VecRestoreArray(F, &f));
   if (!part) near->box = NULL;
   PetscCall(TestWorldRespond(&w->world, stokes, PETSC_TRUE, F, U));
   near->box = box;
-  PetscCall(LayoutGatherVec(w->world.layout, U, all));
+  PetscCall(LayoutGatherVec(w->world.layout, U, w->U[part]));
   PetscCall(StokesDestroy(&stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -155,21 +155,16 @@ static PetscReal Difference(PetscInt n, const PetscReal a[], const PetscReal b[]
 
 /* The markers' velocity on two grids, with D and without. */
 static PetscErrorCode CheckVelocity(const char name[], const char options[], PetscReal most) {
-  PetscReal *normal, *force, *U[2][2], with, without;
   World w[2] = {{{0}}};
+  PetscReal off[2];
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]));
-    const PetscInt n = 2 * w[0].world.layout->M;
-    if (!k) PetscCall(PetscMalloc6(n, &normal, n, &force, n, &U[0][0], n, &U[0][1], n, &U[1][0], n, &U[1][1]));
-    Vectors(&w[k], normal, force);
-    for (int part = 0; part < 2; part++) PetscCall(Velocity(&w[k], force, (PetscBool)part, U[k][part]));
+    for (int part = 0; part < 2; part++) PetscCall(Velocity(&w[k], part));
   }
-  without = Difference(2 * w[0].world.layout->M, U[0][0], U[1][0]);
-  with = Difference(2 * w[0].world.layout->M, U[0][1], U[1][1]);
-  CHECK(with < most, "%s: velocities on 32 and 64 cells differ by %.1e", name, with);
-  CHECK(with < 0.4 * without, "%s: by %.2f of what they do without D", name, with / without);
-  PetscCall(PetscFree6(normal, force, U[0][0], U[0][1], U[1][0], U[1][1]));
+  for (int part = 0; part < 2; part++) off[part] = Difference(2 * w[0].world.layout->M, w[0].U[part], w[1].U[part]);
+  CHECK(off[1] < most, "%s: velocities on 32 and 64 cells differ by %.1e", name, off[1]);
+  CHECK(off[1] < 0.4 * off[0], "%s: by %.2f of what they do without D", name, off[1] / off[0]);
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -177,19 +172,14 @@ static PetscErrorCode CheckVelocity(const char name[], const char options[], Pet
 /* A vesicle a third of a spacing from its own image on both sides: finer points for all images with the box part, as
    without it: unrefined they differ by 2.4e-2. */
 static PetscErrorCode CheckOwnImages(const char name[], const char options[]) {
-  PetscReal *normal, *force, *U[2];
   World w[2] = {{{0}}};
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(WorldCreate(options, 64, (PetscBool)k, &w[k]));
-    const PetscInt n = 2 * w[0].world.layout->M;
-    if (!k) PetscCall(PetscMalloc4(n, &normal, n, &force, n, &U[0], n, &U[1]));
-    Vectors(&w[k], normal, force);
-    PetscCall(Velocity(&w[k], force, (PetscBool)k, U[k]));
+    PetscCall(Velocity(&w[k], k));
   }
-  const PetscReal apart = Difference(2 * w[0].world.layout->M, U[1], U[0]);
+  const PetscReal apart = Difference(2 * w[0].world.layout->M, w[1].U[1], w[0].U[0]);
   CHECK(apart < 2e-3, "%s: velocities with and without D differ by %.1e", name, apart);
-  PetscCall(PetscFree4(normal, force, U[0], U[1]));
   for (int k = 0; k < 2; k++) PetscCall(WorldDestroy(&w[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
