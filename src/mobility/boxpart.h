@@ -5,7 +5,7 @@
 
    phi and psi the values of the table's functions at the markers for velocities and for sources. A product sums sources
    into the functions, goes through the eigenvectors once, and takes velocities out of the functions. D is steady in
-   every flow. Over a period the near field's C is of nearest images only and fades where D takes over (BoxPartImage).
+   every flow. Over a period the near field's C is of nearest images only and fades where D takes over (BoxImage).
    A rank has the values of its own markers; a product sums the amplitudes over all ranks.
 
    Create, Place wherever the markers have been placed, then Apply or Add. */
@@ -39,11 +39,6 @@ PETSC_EXTERN PetscErrorCode BoxPartDestroy(BoxPart *box);
 
 /* BoxPartPlace - where the markers have been placed. Collective. */
 PETSC_EXTERN PetscErrorCode BoxPartPlace(BoxPart box);
-
-/* BoxPartImage - BoxImage of the box. Not collective. */
-static inline PetscReal BoxPartImage(BoxPart box, PetscReal d[2]) {
-  return BoxImage(box->axis, d);
-}
 
 /* BoxPartApply - U += alpha D F, own parts of a marker vector U[2n] and of forces F[2n], as NearFieldApply's, or
    tensors F[DIPOLE_COUNT n]. Collective. */

@@ -95,7 +95,7 @@ static void AddMobilityPair(PetscInt rows, PetscInt i, PetscInt j, const PetscRe
 static void BoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   const PetscReal *X = f->set.markers->X, h = f->set.markers->grid->h;
   PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
-  const PetscReal fade = BoxPartImage(f->box, d);
+  const PetscReal fade = BoxImage(f->set.box, d);
   if (d[0] * d[0] + d[1] * d[1] < PetscSqr(BOX_NEAR * h)) {
     NearLatticePair(f->pairs, i, j, d, L);
     NearImageAdd(f->pairs->image, NULL, i, j, d, L, C);

@@ -108,15 +108,12 @@ static PetscBool AreBlocksOver(Preconditioner p) {
 }
 
 PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
-  const Coupling c = p->unknowns->coupling;
   PetscFunctionBeginUser;
   p->now = (Application){.graded = graded};
   p->failed = PETSC_FALSE;
-  if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
-  if (p->failed || !CouplingHasMembrane(c)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (p->shapes) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
-  if (!p->blocks) PetscFunctionReturn(PETSC_SUCCESS);
+  if (p->shapes && !p->failed) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
+  if (!p->blocks || p->failed) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
   if (AreBlocksOver(p)) PetscCall(MakeBlocks(p));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -165,12 +162,10 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(VecGetArray(z, &V));
   sigma = V + UnknownsEdges(u);
   UnknownsScale(u, PETSC_TRUE, V);
-  if (CouplingHasBodies(u->coupling)) {
-    if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
-    if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
-    if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
-    if (p->solid) PetscCall(SolveObstacles(p, V, sigma));
-  }
+  if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
+  if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
+  if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
+  if (p->solid) PetscCall(SolveObstacles(p, V, sigma));
   PetscCall(VecRestoreArray(z, &V));
   if (p->failed) PetscCall(VecSet(z, NAN)); /* the solve ends as diverged */
   PetscFunctionReturn(PETSC_SUCCESS);
