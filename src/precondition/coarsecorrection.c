@@ -2,17 +2,42 @@
 #include "base/lanes.h"
 #include "layers/nearblock.h"
 
-#define CELLS 4 /* of the coarse grid: reach */
+#define CELLS 4  /* of the coarse grid: reach */
+#define ANGLES 8 /* in a quarter turn */
+
+/* R by distance, from L of cells and viscosity 1: the mean over directions, fading smoothly in the last quarter. */
+static void TabulateCorrection(CoarseCorrection s, const OffsetTable *L) {
+  const LayerSetting cells = {.nu = 1, .unit = 1};
+  for (PetscInt k = 0; k < CORRECTION_POINTS; k++) {
+    const PetscReal r = CELLS * PetscMax((PetscReal)k, 0.5) / (CORRECTION_POINTS - 1),
+                    x = PetscMax(0, 4 * r / CELLS - 3);
+    const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x) / s->mobility->fluid->nu;
+    PetscReal S[3];
+    StokesletOne(&cells, (PetscReal[]){r, 0}, 0, S);
+    for (int q = 0; q < ANGLES; q++) {
+      const PetscReal angle = 0.5 * PETSC_PI * (q + 0.5) / ANGLES, a = PetscCosReal(angle), b = PetscSinReal(angle);
+      PetscReal m[3];
+      MeanTableAt(L, (PetscReal[]){a * r, b * r}, m);
+      S[0] -= (a * a * m[0] + b * b * m[1] + 2 * a * b * m[2]) / ANGLES;
+      S[1] -= (b * b * m[0] + a * a * m[1] - 2 * a * b * m[2]) / ANGLES;
+    }
+    s->along[k] = fade * S[0];
+    s->across[k] = fade * S[1];
+  }
+}
 
 PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *out) {
   const PetscInt M = mobility->bodies->membrane->layout->M;
   CoarseCorrection s;
+  OffsetTable L;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
   s->mobility = mobility;
-  s->h = coarse->fluid->grid->h;
-  PetscCall(MeanTableCreate(&mobility->near->lattice, coarse->markers->kernel, &s->mean));
+  s->reach = CELLS * coarse->fluid->grid->h;
+  PetscCall(MeanTableCreate(&mobility->near->lattice, coarse->markers->kernel, &L));
+  TabulateCorrection(s, &L);
+  PetscCall(OffsetTableDestroy(&L));
   PetscCall(PetscCalloc2(2 * M, &s->force, 2 * M, &s->jump));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -20,23 +45,20 @@ PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, Coar
 PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
   PetscFunctionBeginUser;
   if (!*range) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OffsetTableDestroy(&(*range)->mean));
   PetscCall(PetscFree((*range)->pair));
   PetscCall(PetscFree2((*range)->force, (*range)->jump));
   PetscCall(PetscFree(*range));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pair of markers i and j, d coarse cells apart. It fades smoothly in the last quarter of the reach. */
-static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2]) {
-  const LayerSetting cells = {.nu = 1, .unit = 1};
-  const PetscReal x = PetscMax(0, 4 * PetscHypotReal(d[0], d[1]) / CELLS - 3);
-  const PetscReal fade = (1 - x) * (1 - x) * (1 + 2 * x) / s->mobility->fluid->nu;
-  PetscReal S[3], L[3];
-  StokesletOne(&cells, d, 0, S);
-  MeanTableAt(&s->mean, d, L);
-  return (CorrectionPair){i, j, (float)(fade * (S[0] - L[0])), (float)(fade * (S[2] - L[2])),
-                          (float)(fade * (S[1] - L[1]))};
+/* The pair of markers i and j, d apart. */
+static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
+  const PetscReal at = PetscSqrtReal(r2) / s->reach * (CORRECTION_POINTS - 1);
+  const PetscInt k = PetscMin((PetscInt)at, CORRECTION_POINTS - 2);
+  const PetscReal t = at - (PetscReal)k, across = (1 - t) * s->across[k] + t * s->across[k + 1],
+                  along = (1 - t) * s->along[k] + t * s->along[k + 1], both = r2 > 0 ? (along - across) / r2 : 0;
+  return (CorrectionPair){i, j, (float)(across + both * d[0] * d[0]), (float)(both * d[0] * d[1]),
+                          (float)(across + both * d[1] * d[1])};
 }
 
 /* The pairs of marker i with those of the block's column. */
@@ -44,14 +66,13 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   const Layout l = s->mobility->bodies->membrane->layout;
   const NearBounds *column = &s->mobility->near->pairs->bounds[b->column];
   const PetscReal *X = s->mobility->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
-  const PetscReal reach = CELLS * s->h;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++)
-    if (x[d] < column->low[d] - reach || x[d] > column->high[d] + reach) PetscFunctionReturn(PETSC_SUCCESS);
+    if (x[d] < column->low[d] - s->reach || x[d] > column->high[d] + s->reach) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ArrayReserve((size_t)(s->pairs + LayoutCount(l, b->column)), &s->room, &s->pair));
   for (PetscInt j = l->start[b->column]; j < l->start[b->column + 1]; j++) {
-    const PetscReal d[2] = {(x[0] - X[2 * j]) / s->h, (x[1] - X[2 * j + 1]) / s->h};
-    if (d[0] * d[0] + d[1] * d[1] < CELLS * CELLS) s->pair[s->pairs++] = CorrectionOf(s, i, j, d);
+    const PetscReal d[2] = {x[0] - X[2 * j], x[1] - X[2 * j + 1]}, r2 = d[0] * d[0] + d[1] * d[1];
+    if (r2 < s->reach * s->reach) s->pair[s->pairs++] = CorrectionOf(s, i, j, d, r2);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

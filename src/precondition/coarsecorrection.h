@@ -3,8 +3,8 @@
 
        R = S - L,
 
-   S the Stokeslet and L the mean of what kernel and lattice of the coarse grid make of it, over the places in a cell. R
-   fades smoothly to zero at a reach of four coarse cells.
+   S the Stokeslet and L the mean of what kernel and lattice of the coarse grid make of it, over the places in a cell
+   and all directions. R fades smoothly to zero at a reach of four coarse cells and is tabulated by distance.
 
        D J(x) = -(1/pi) SUM_k r (r.N_k)(r.J_k)/r^4,      r = X_k - x,
 
@@ -14,6 +14,8 @@
 #include "precondition/coarsegrid.h"
 #include "mobility/mobility.h"
 
+#define CORRECTION_POINTS 512 /* of the table */
+
 /* R of two markers, symmetric. */
 typedef struct {
   PetscInt i, j; /* i is an own one */
@@ -22,9 +24,10 @@ typedef struct {
 
 typedef struct _p_CoarseCorrection *CoarseCorrection;
 struct _p_CoarseCorrection {
-  Mobility mobility; /* borrowed: markers, normals, and the pairs of vesicles near one another */
-  PetscReal h;       /* coarse cells (length) */
-  OffsetTable mean;  /* L, of cells and viscosity 1 */
+  Mobility mobility;                   /* borrowed: markers, normals, and the pairs of vesicles near one another */
+  PetscReal reach;                     /* length */
+  PetscReal across[CORRECTION_POINTS]; /* R = across I + (along - across) r r^T/r^2 by distance, from 0 to the reach */
+  PetscReal along[CORRECTION_POINTS];
   CorrectionPair *pair;
   PetscInt pairs;
   size_t room;
