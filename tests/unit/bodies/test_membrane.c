@@ -188,14 +188,14 @@ static PetscErrorCode CheckBending(const TestMembrane *m, unsigned *state) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Dm and Dm^T, and what Dm makes of a rigid motion. */
+/* Dm and Dm^T, their dense matrix, and what Dm makes of a rigid motion. */
 static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
   const PetscInt n = 2 * m->M;
   const PetscReal *X = m->scene->shape.X;
-  PetscReal *F, *V, *sigma, *d, product = 0, swapped = 0, size = 0, error = 0;
+  PetscReal *F, *V, *sigma, *d, *D, product = 0, swapped = 0, size = 0, error = 0, dense = 0;
   MembraneLaw law;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(n, &F, n, &V, m->M, &sigma, m->M, &d));
+  PetscCall(PetscCalloc5(n, &F, n, &V, m->M, &sigma, m->M, &d, m->M * n, &D));
   PetscCall(LawCreate(m->membrane, 1, 0, 1, &law));
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
   for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
@@ -206,12 +206,19 @@ static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * V[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "Dm and Dm^T adjoint, error %.1e",
         PetscAbsReal(product - swapped) / size);
+  PetscCall(LawBlock(law, 0, D));
+  for (PetscInt k = 0; k < m->M; k++) {
+    PetscReal row = -d[k];
+    for (PetscInt j = 0; j < n; j++) row += D[k * n + j] * V[j];
+    dense = PetscMax(dense, PetscAbsReal(row));
+  }
+  CHECK(dense < 1e-13, "Dm as a matrix, error %.1e", dense);
   for (PetscInt k = 0; k < m->M; k++) V[2 * k] = 3 - 2 * X[2 * k + 1], V[2 * k + 1] = 1 + 2 * X[2 * k];
   LawRows(law, V, sigma, d);
   for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(d[k]));
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
   PetscCall(LawDestroy(&law));
-  PetscCall(PetscFree4(F, V, sigma, d));
+  PetscCall(PetscFree5(F, V, sigma, d, D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

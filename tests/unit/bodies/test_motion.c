@@ -1,0 +1,44 @@
+/* The motion of solid bodies: the velocity of a marker is the rate of change of its place, vectors of the body turn
+   with it, and no marker goes farther than its stride. */
+#include "facts.h"
+#include "bodies/motion.h"
+
+#define N 5
+
+static PetscErrorCode CheckMotion(const char name[], const BodyMotion *m, PetscReal t) {
+  const PetscReal step = 1e-5, rest[2 * N] = {1.5, 2, 1, 2.7, 0.4, 2, 1, 1.6, 1.2, 1.8}, later = t + 0.4;
+  PetscReal X[2 * N], before[2 * N], after[2 * N], U[2], rate = 0, off = 0, far = 0, reach = 0;
+  PetscFunctionBeginUser;
+  MotionCarry(m, t - step, N, rest, before);
+  MotionCarry(m, t, N, rest, X);
+  MotionCarry(m, t + step, N, rest, after);
+  for (PetscInt k = 0; k < N; k++) {
+    MotionVelocity(m, t, X + 2 * k, U);
+    for (int c = 0; c < 2; c++)
+      rate = PetscMax(rate, PetscAbsReal((after[2 * k + c] - before[2 * k + c]) / (2 * step) - U[c]));
+  }
+  CHECK(rate < 1e-8, "%s, t = %g: places change by the velocity, error %.1e", name, t, rate);
+  MotionCarry(m, later, N, rest, after);
+  for (PetscInt k = 0; k < N; k++) {
+    far = PetscMax(far, PetscHypotReal(after[2 * k] - X[2 * k], after[2 * k + 1] - X[2 * k + 1]));
+    reach = PetscMax(reach, PetscHypotReal(rest[2 * k] - m->center[0], rest[2 * k + 1] - m->center[1]));
+  }
+  CHECK(far <= MotionStride(m, t, later, reach), "%s, t = %g: markers go by %.3f at most, in a stride", name, t, far);
+  for (PetscInt k = 2; k < 2 * N; k++) before[k] = X[k] - X[k % 2], after[k] -= after[k % 2];
+  MotionTurn(m, t, later, N - 1, before + 2);
+  for (PetscInt k = 2; k < 2 * N; k++) off = PetscMax(off, PetscAbsReal(before[k] - after[k]));
+  CHECK(off < 1e-14, "%s, t = %g: vectors turn with the body, error %.1e", name, t, off);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Facts(void) {
+  BodyMotion m = {
+      .center = {1, 2}, .velocity = {0.3, -0.2}, .rotation = 1.3, .carried = PETSC_TRUE, .turned = PETSC_TRUE};
+  const BodyMotion rest = {.center = {1, 2}};
+  PetscFunctionBeginUser;
+  PetscCall(CheckMotion("at rest", &rest, 0.7));
+  for (PetscReal t = 0; t < 1; t += 0.6) PetscCall(CheckMotion("steady", &m, t));
+  m.frequency = 2.5;
+  for (PetscReal t = 0; t < 1; t += 0.6) PetscCall(CheckMotion("swinging", &m, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
