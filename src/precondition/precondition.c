@@ -139,19 +139,6 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The obstacles' forces that go with the vesicles'. */
-static PetscErrorCode SolveObstacles(Preconditioner p, PetscScalar V[], const PetscScalar sigma[]) {
-  const Coupling c = p->unknowns->coupling;
-  PetscFunctionBeginUser;
-  if (ObstacleBlockCoupled(p->solid)) {
-    PetscCall(PetscArrayzero(p->force, p->unknowns->velocity));
-    PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, V, p->force));
-    LawForce(c->law, 1, sigma, p->force);
-  }
-  PetscCall(ObstacleBlockEnd(p->solid, p->force, V + p->unknowns->velocity));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   const Unknowns u = p->unknowns;
   PetscScalar *V, *sigma;
@@ -165,7 +152,8 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
   if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
   if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
-  if (p->solid) PetscCall(SolveObstacles(p, V, sigma));
+  if (p->solid && ObstacleBlockCoupled(p->solid)) PetscCall(UnknownsForce(u, V, p->force));
+  if (p->solid) PetscCall(ObstacleBlockEnd(p->solid, p->force, V + u->velocity));
   PetscCall(VecRestoreArray(z, &V));
   if (p->failed) PetscCall(VecSet(z, NAN)); /* the solve ends as diverged */
   PetscFunctionReturn(PETSC_SUCCESS);

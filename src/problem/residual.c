@@ -3,13 +3,10 @@
 /* (2) F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), and the unknown F of obstacles. */
 static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   const Unknowns u = s->unknowns;
-  const Coupling c = u->coupling;
   PetscScalar *f;
   PetscFunctionBeginUser;
-  PetscCall(VecSet(F, 0));
   PetscCall(VecGetArray(F, &f));
-  PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, f));
-  LawForce(c->law, 1, x + UnknownsEdges(u), f);
+  PetscCall(UnknownsForce(u, x, f));
   PetscCall(PetscArraycpy(f + u->velocity, x + u->velocity, u->solid));
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -86,3 +86,12 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   if (o) ObstaclesScale(o, weight, inverse, y + u->velocity);
   LawScale(u->coupling->law, weight, inverse, y + UnknownsEdges(u));
 }
+
+PetscErrorCode UnknownsForce(Unknowns u, const PetscScalar x[], PetscScalar F[]) {
+  const Coupling c = u->coupling;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(F, u->velocity));
+  PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, F));
+  LawForce(c->law, 1, x + UnknownsEdges(u), F);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

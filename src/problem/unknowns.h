@@ -37,6 +37,10 @@ PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec 
    collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
+/* UnknownsForce - F[2n] = Dm^T sigma + (1/a0) K V, minus the forces on the own vesicles' markers for the unknowns x.
+   Collective. */
+PETSC_EXTERN PetscErrorCode UnknownsForce(Unknowns unknowns, const PetscScalar x[], PetscScalar F[]);
+
 /* UnknownsEdges - index at which the law's unknowns start in a rank's part. Not collective. */
 static inline PetscInt UnknownsEdges(Unknowns u) {
   return u->velocity + u->solid;
