@@ -37,8 +37,8 @@ PetscErrorCode Facts(void) {
   const BodyMotion rest = {.center = {1, 2}};
   PetscFunctionBeginUser;
   PetscCall(CheckMotion("at rest", &rest, 0.7));
-  for (PetscReal t = 0; t < 1; t += 0.6) PetscCall(CheckMotion("steady", &m, t));
+  for (PetscReal t = 0; t < 1; t += 0.4) PetscCall(CheckMotion("steady", &m, t));
   m.frequency = 2.5;
-  for (PetscReal t = 0; t < 1; t += 0.6) PetscCall(CheckMotion("swinging", &m, t));
+  for (PetscReal t = 0; t < 1; t += 0.4) PetscCall(CheckMotion("swinging", &m, t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
