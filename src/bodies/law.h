@@ -1,6 +1,6 @@
 /* What the edges of membranes obey: unknowns at the edges, the forces that they make on the markers, and as many rows,
    which determine them. The law of all vesicles is that edges keep their lengths; its unknowns sigma are the tension,
-   one number an edge. With the markers X* where the law is placed, their edges e* = D X*, tau = e* /ds, and
+   one number an edge. With the markers X* where the law is placed, their edges e* = D X*, tau = e* / ds, and
    (Dm U)_k = tau_k.(D U)_k, the stretching rate of the edges times ds,
 
        F = Dm^T sigma        minus the force on the markers
@@ -14,7 +14,7 @@
    Next to nothing is lost: a pressure, a force along z, moves nothing in a fluid that keeps its volume.
 
    A law is that of the vesicles vesicle .. end - 1. Arrays are of these vesicles: [2n] of their n markers, [n] of their
-   edges, LawNumbers unknowns and rows. Nothing crosses ranks. */
+   edges, LawNumbers unknowns and rows. Vectors are those of the own vesicles. */
 #pragma once
 #include "bodies/membrane.h"
 
@@ -23,18 +23,19 @@ struct _p_MembraneLaw {
   Membrane membrane; /* borrowed */
   PetscReal h2;      /* h^2 */
   PetscInt vesicle, end;
-  PetscInt first, n; /* its markers */
-  PetscReal *tau;    /* [2n] */
-  PetscReal *ratio;  /* [its vesicles]; NULL without an area target, */
-  PetscReal *z;      /* [2n] */
-  PetscReal *speed;  /* [its vesicles] and s (length/time) */
+  PetscInt first, n; /* its markers: first .. first + n - 1 */
+  PetscReal *tau;    /* [2n] tangents where it is placed */
+  PetscReal *ratio;  /* [vesicles of the law] ratios of viscosities; NULL without an area target */
+  PetscReal *z;      /* [2n] unit gradients of the areas; NULL likewise */
+  PetscReal *speed;  /* [vesicles of the law] s (length/time); NULL likewise */
 };
 
+/* LawCreate - the law of these vesicles, not placed yet, without an area target. Not collective, as are all functions
+   where nothing else is said. */
 PETSC_EXTERN PetscErrorCode LawCreate(Membrane membrane, PetscReal h, PetscInt vesicle, PetscInt end, MembraneLaw *law);
 PETSC_EXTERN PetscErrorCode LawDestroy(MembraneLaw *law);
 
-/* LawAimAreas - steps aim at areas from here on; ratio[vesicles of all], NULL: all 1. LawAimsAreas - whether they do.
- */
+/* LawAimAreas - steps aim at areas from here on; ratio[all vesicles], NULL: all 1. LawAimsAreas - whether they do. */
 PETSC_EXTERN PetscErrorCode LawAimAreas(MembraneLaw law, const PetscReal ratio[]);
 static inline PetscBool LawAimsAreas(MembraneLaw law) {
   return law->ratio ? PETSC_TRUE : PETSC_FALSE;
@@ -63,8 +64,10 @@ PETSC_EXTERN PetscErrorCode LawTargetAreas(MembraneLaw law, PetscReal a0, Vec Xs
    for a product with the operator. Nothing without an area target. */
 PETSC_EXTERN void LawReplaceAreas(MembraneLaw law, PetscBool aimed, const PetscScalar V[], PetscScalar y[]);
 
-/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - of a law of the
-   own vesicles, the largest residual of the rows for V, times h^2/ds: a surface divergence (1/time). Collective. */
+/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest, which is
+   collective
+   - of a law of the own vesicles, the largest residual of the rows for V, times h^2/ds: a surface divergence (1/time).
+ */
 PETSC_EXTERN void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]);
 PETSC_EXTERN PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec g, PetscReal *largest);
 

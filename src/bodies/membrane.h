@@ -1,8 +1,8 @@
-/* Membranes of vesicles: edges, forces of a tension, measures, and corrections after a step.
+/* Membranes of vesicles: edges, measures, and corrections after a step.
 
-   The markers X_k of a vesicle have edges e = D X, unit tangents tau = e/ds and the stretching rate Dm U = tau . D U.
-   Forces on markers are transposes of derivatives: Dm^T sigma of a tension. D is the difference of
-   neighbours (edge k runs from marker k-1 to marker k) or the spectral derivative by the marker index.
+   The markers X_k of a vesicle have edges e = D X and tangents tau = e/ds. D is the difference of neighbours (edge k
+   runs from marker k-1 to marker k) or the spectral derivative by the marker index. What edges obey is the membranes'
+   law (law.h).
 
    Marker vectors and edge vectors (a tension) are distributed as markers/layout.h says. Functions of "all own vesicles"
    take this rank's part of them. Functions of one vesicle take its own arrays, [2n] or [n] for its n markers, and work

@@ -1,4 +1,5 @@
 #include "bodies/obstacles.h"
+#include "base/agree.h"
 #include "curve/contacts.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
@@ -235,18 +236,25 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
   }
 }
 
-PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, PetscScalar y[], char message[PETVES_MAX_MESSAGE]) {
+PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, Vec k, char message[PETVES_MAX_MESSAGE]) {
   const Layout l = o->layout;
+  PetscScalar *a, *y;
   PetscReal *u, U[2];
+  PetscInt size;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * l->n, &u));
   PetscCall(FlowVelocities(flow, o->t, l->n, o->X + 2 * l->first, u, message));
+  PetscCall(VecGetLocalSize(k, &size));
+  PetscCall(VecGetArray(k, &a));
+  y = a + size - 2 * l->n;
   for (PetscInt b = l->own; b < l->end; b++)
-    for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
-      MotionVelocity(&o->motion[b], o->t, o->X + 2 * k, U);
-      for (PetscInt c = 0, at = 2 * (k - l->first); c < 2; c++) y[at + c] += u[at + c] - o->ratio[b] * U[c];
+    for (PetscInt i = l->start[b]; i < l->start[b + 1]; i++) {
+      MotionVelocity(&o->motion[b], o->t, o->X + 2 * i, U);
+      for (PetscInt c = 0, at = 2 * (i - l->first); c < 2; c++) y[at + c] += u[at + c] - o->ratio[b] * U[c];
     }
+  PetscCall(VecRestoreArray(k, &a));
   PetscCall(PetscFree(u));
+  if (flow->type == FLOW_CUSTOM) PetscCall(AgreeMessage(l->comm, message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

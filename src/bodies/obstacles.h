@@ -66,9 +66,10 @@ PETSC_EXTERN void ObstaclesTurn(Obstacles obstacles, PetscReal from, PetscReal t
 /* ObstaclesScale - multiply the residuals y[2w] of the own rows by weight/ds, or (inverse) divide. Not collective. */
 PETSC_EXTERN void ObstaclesScale(Obstacles obstacles, PetscReal weight, PetscBool inverse, PetscScalar y[]);
 
-/* ObstaclesTarget - y += u_inf - U_w of the own obstacles' markers where and when they have been placed; message is
-   empty, or says that a custom flow has no value there, on this rank. Not collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesTarget(Obstacles obstacles, const Flow *flow, PetscScalar y[],
+/* ObstaclesTarget - k += u_inf - U_w at the obstacles' markers where and when they have been placed, the last ones of
+   each rank's part of k, a marker vector of all bodies; message is empty, or says that a custom flow has no value
+   there. Collective. */
+PETSC_EXTERN PetscErrorCode ObstaclesTarget(Obstacles obstacles, const Flow *flow, Vec k,
                                             char message[PETVES_MAX_MESSAGE]);
 
 /* Of the fluid on an obstacle, a unit of depth, density 1. */

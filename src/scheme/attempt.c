@@ -1,5 +1,4 @@
 /* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
-#include "base/agree.h"
 #include "bodies/turning.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
@@ -28,19 +27,6 @@ static PetscErrorCode TurnEdges(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* k of obstacles += u_inf - U_w; report.failure where a custom flow has no value. */
-static PetscErrorCode AddObstacleData(Scheme s, Vec known) {
-  const Bodies b = s->coupling->bodies;
-  PetscScalar *k;
-  PetscFunctionBeginUser;
-  if (!b->obstacles) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArray(known, &k));
-  PetscCall(ObstaclesTarget(b->obstacles, &s->scene->flow, k + BodiesFirstObstacle(b), s->report.failure));
-  PetscCall(VecRestoreArray(known, &k));
-  if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The history uhat: as flows beside f, or in f where there is no body; none in quasi-steady flow. next.w is used for
    uhat. */
 static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
@@ -63,6 +49,7 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
 /* f = uhat - N(w*), minus the known forces F at Y = Xhat + u_inf/a0, the known motion u_inf + v dY/dt with the labels'
    speed v, and k, u_inf less the obstacles' velocity. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
+  const Obstacles obstacles = s->coupling->bodies->obstacles;
   Forcing *f = &d->next.forcing;
   PetscFunctionBeginUser;
   PetscCall(VecSet(d->known, 0));
@@ -73,7 +60,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
   PetscCall(VecCopy(s->background, d->moved));
   PetscCall(CouplingTread(s->coupling, 1, d->Y, d->moved));
-  PetscCall(AddObstacleData(s, d->known));
+  if (obstacles) PetscCall(ObstaclesTarget(obstacles, &s->scene->flow, d->known, s->report.failure));
   if (d->convection) {
     PetscCall(HistorySum(b->order, b->star, 1, STATES(s, w), d->next.w));
     PetscCall(ConvectionAdd(d->convection, -1, d->next.w, f));
