@@ -39,26 +39,23 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = P^-1 x: edge vectors travel to root and back. */
+/* y = P^-1 x: every rank has all of x, and takes its own part of the result. */
 static PetscErrorCode ApplyChat(PC pc, Vec x, Vec y) {
-  const PetscScalar *own;
-  PetscScalar *all = NULL, *result;
+  const PetscScalar *result;
+  PetscScalar *all, *own;
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &s));
   const Layout l = s->coupling->membrane->layout;
-  const PetscBool here = l->rank == s->root ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(VecGetArrayRead(x, &own));
-  if (here) PetscCall(VecGetArray(s->all[0], &all));
-  PetscCall(LayoutToRank(l, s->root, 1, own, all));
-  if (here) PetscCall(VecRestoreArray(s->all[0], &all));
-  PetscCall(VecRestoreArrayRead(x, &own));
-  if (here) PetscCall(PCApply(s->chat, s->all[0], s->all[1]));
-  PetscCall(VecGetArray(y, &result));
-  if (here) PetscCall(VecGetArray(s->all[1], &all));
-  PetscCall(LayoutFromRank(l, s->root, 1, all, result));
-  if (here) PetscCall(VecRestoreArray(s->all[1], &all));
-  PetscCall(VecRestoreArray(y, &result));
+  PetscCall(VecGetArray(s->all[0], &all));
+  PetscCall(LayoutGatherVec(l, x, all));
+  PetscCall(VecRestoreArray(s->all[0], &all));
+  PetscCall(PCApply(s->chat, s->all[0], s->all[1]));
+  PetscCall(VecGetArrayRead(s->all[1], &result));
+  PetscCall(VecGetArray(y, &own));
+  PetscCall(PetscArraycpy(own, result + l->first, l->n));
+  PetscCall(VecRestoreArray(y, &own));
+  PetscCall(VecRestoreArrayRead(s->all[1], &result));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,10 +98,8 @@ static PetscErrorCode PreferRight(KSP ksp) {
 
 /* PCILU in nested dissection, unless options say otherwise. */
 static PetscErrorCode CreateChat(LagrangianSolver s) {
-  const Layout l = s->coupling->membrane->layout;
   PetscBool none;
   PetscFunctionBeginUser;
-  s->root = LayoutOwner(l, 0);
   PetscCall(PCCreate(PETSC_COMM_SELF, &s->chat));
   PetscCall(PCSetOptionsPrefix(s->chat, s->prefix));
   PetscCall(PCSetType(s->chat, PCILU));
@@ -114,7 +109,7 @@ static PetscErrorCode CreateChat(LagrangianSolver s) {
   PetscCall(PCSetFromOptions(s->chat));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->chat, PCNONE, &none));
   if (none) PetscCall(PCDestroy(&s->chat));
-  for (int k = 0; k < 2 && l->rank == s->root; k++) PetscCall(VecCreateSeq(PETSC_COMM_SELF, l->M, &s->all[k]));
+  for (int k = 0; k < 2; k++) PetscCall(VecCreateSeq(PETSC_COMM_SELF, s->coupling->membrane->layout->M, &s->all[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,7 +127,7 @@ PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
   if (s->chat) {
     PetscCall(PCShellSetContext(pc, s));
     PetscCall(PCShellSetApply(pc, ApplyChat));
-    PetscCall(PCShellSetName(pc, "of the assembled Chat, on one rank"));
+    PetscCall(PCShellSetName(pc, "of the assembled Chat, on every rank"));
   }
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(PreferRight(s->ksp));
@@ -168,19 +163,16 @@ PetscErrorCode LagrangianSolverDestroy(LagrangianSolver *solver) {
 
 /* The tension problem's preconditioner follows the markers. */
 static PetscErrorCode SetUpChat(LagrangianSolver s) {
-  const Layout l = s->coupling->membrane->layout;
-  PCFailedReason why = PC_NOERROR;
+  PCFailedReason why;
   Mat Chat;
   PetscFunctionBeginUser;
   s->failed = PETSC_FALSE;
   if (!s->chat) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TensionAssemble(s->coupling, s->root, &Chat));
-  if (l->rank == s->root) {
-    PetscCall(PCSetOperators(s->chat, Chat, Chat));
-    PetscCall(PCSetUp(s->chat));
-    PetscCall(PCGetFailedReason(s->chat, &why));
-  }
-  PetscCall(AgreeFlag(l->comm, why != PC_NOERROR ? PETSC_TRUE : PETSC_FALSE, &s->failed));
+  PetscCall(TensionAssemble(s->coupling, &Chat));
+  PetscCall(PCSetOperators(s->chat, Chat, Chat));
+  PetscCall(PCSetUp(s->chat));
+  PetscCall(PCGetFailedReason(s->chat, &why));
+  PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, why != PC_NOERROR ? PETSC_TRUE : PETSC_FALSE, &s->failed));
   PetscCall(MatDestroy(&Chat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

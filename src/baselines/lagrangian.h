@@ -9,10 +9,8 @@ struct _p_LagrangianSolver {
   const char *prefix;
   KSP ksp;
   Mat A;                  /* the operator, a shell */
-  PC chat;                /* factors of the assembled Chat. Every rank has it, so that a bad option is an error of all
-                             ranks; only root applies it. NULL without a preconditioner, as for bending */
-  PetscMPIInt root;       /* the owner of the first vesicle */
-  Vec all[2];             /* on root: all edges, before and after chat */
+  PC chat;                /* factors of the assembled Chat; NULL without a preconditioner, as for bending */
+  Vec all[2];             /* all edges, before and after chat */
   Forcing r;              /* work: S sigma or B X; for the tension with its divergence */
   Vec w2, q2;             /* work: a velocity and a pressure */
   Vec U;                  /* work: a marker vector */

@@ -52,10 +52,9 @@ static PetscErrorCode Momentum(Scheme s, Penalty *d) {
 static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   Penalty *d = (Penalty *)s->data;
   State *q = &s->state;
-  PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t, &placed));
-  if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));
   /* 2  H u* = r,  L psi = -(G^T u* + bc2),  u = u* - G psi,  dp = psi/dt + nu (G^T u* + bc2) */

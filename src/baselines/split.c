@@ -86,10 +86,9 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   Fluid f = s->fluid;
   Coupling c = s->coupling;
   const PetscBool any = CouplingHasMembrane(c);
-  PetscBool placed;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t, &placed));
-  if (!placed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PredictVelocity(s, d));                 /* step 1 */
   if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
@@ -130,10 +129,10 @@ static PetscErrorCode SetUp_Split(Scheme s) {
   PetscCall(VecDuplicate(q->X, &d->U));
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TensionSolverCreate(s->coupling, &d->tension));
-  SchemeAddSolver(s, d->tension->ksp, d->tension->chat);
+  PetscCall(SchemeAddSolver(s, d->tension->ksp, d->tension->chat));
   if (CouplingBending(s->coupling) <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BendingSolverCreate(s->coupling, &d->bending));
-  SchemeAddSolver(s, d->bending->ksp, NULL);
+  PetscCall(SchemeAddSolver(s, d->bending->ksp, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

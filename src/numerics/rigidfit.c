@@ -35,61 +35,37 @@ PetscReal RigidFitLeast(const PetscReal a[RIGIDFIT_SIZES], const PetscReal b[RIG
   return PetscSqrtReal(sum);
 }
 
-#define SHIFTS 4
 #define SAME 1e-12
 
-/* Products conj(y) x of points, two at once or one: real and imaginary parts in sums of their own, so that the
-   imaginary part of a curve with itself is zero to the bit. */
-typedef struct {
-  Lanes same[SHIFTS], cross[SHIFTS];
-} ShiftProducts;
-
-static inline void AddShiftPoints(Lanes y, Lanes x, int shift, ShiftProducts *sum) {
-  const Lanes turned = {-y[1], y[0], -y[3], y[2]};
-  sum->same[shift] += y * x;
-  sum->cross[shift] += turned * x;
-}
-
-static inline Lanes OnePoint(const PetscReal x[2]) {
-  return (Lanes){x[0], x[1], 0, 0};
-}
-
-/* += SUM_k conj(y_k) x_{k + i} of n markers, all shifts i at once. */
-static inline void AddShiftProducts(PetscInt n, const PetscReal X[], const PetscReal Y[], ShiftProducts *sum) {
-  PetscInt k = 0;
-  for (; k + 2 <= n; k += 2)
-    for (int i = 0; i < SHIFTS; i++) AddShiftPoints(LanesAt(Y + 2 * k), LanesAt(X + 2 * (k + i)), i, sum);
-  for (; k < n; k++)
-    for (int i = 0; i < SHIFTS; i++) AddShiftPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * (k + i)), i, sum);
-}
-
-/* c_i = SUM_k conj(y_k) x_{k + j + i}, markers counted round the curve; j + SHIFTS is at most n. */
-static void CorrelateShifts(PetscInt n, PetscInt j, const PetscReal X[], const PetscReal Y[], PetscReal c[SHIFTS][2]) {
-  const PetscInt whole = n - j - (SHIFTS - 1); /* up to here no shift goes past the last marker, from n - j on all do */
-  ShiftProducts sum = {{{0}}, {{0}}};
-  AddShiftProducts(whole, X + 2 * j, Y, &sum);
-  for (PetscInt k = whole; k < n - j; k++)
-    for (int i = 0; i < SHIFTS; i++) AddShiftPoints(OnePoint(Y + 2 * k), OnePoint(X + 2 * ((k + j + i) % n)), i, &sum);
-  AddShiftProducts(j, X, Y + 2 * (n - j), &sum);
-  for (int i = 0; i < SHIFTS; i++) LanesTwoSums(sum.same[i], sum.cross[i], &c[i][0], &c[i][1]);
+/* sum[0] + i sum[1] += SUM conj(y_k) x_k of n markers, two at once. Real and imaginary parts are in sums of their own,
+   so that the imaginary part of a curve with itself is zero to the bit. */
+static inline void AddProducts(PetscInt n, const PetscReal X[], const PetscReal Y[], Lanes sum[2]) {
+  const PetscInt last = n - 1;
+  for (PetscInt k = 0; k < last; k += 2) {
+    const Lanes y = LanesAt(Y + 2 * k), x = LanesAt(X + 2 * k);
+    sum[0] += y * x;
+    sum[1] += (Lanes){-y[1], y[0], -y[3], y[2]} * x;
+  }
+  if (n % 2 == 0) return;
+  const PetscReal *y = Y + 2 * last, *x = X + 2 * last;
+  sum[0] += (Lanes){y[0] * x[0], y[1] * x[1]};
+  sum[1] += (Lanes){-y[1] * x[0], y[0] * x[1]};
 }
 
 RigidFit RigidFitCurves(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
   RigidFit fit = {.turn = {1, 0}};
   PetscReal squares = 0, largest = -1;
   for (PetscInt k = 0; k < 2 * n; k++) squares += X[k] * X[k] + Y[k] * Y[k];
-  for (PetscInt from = 0; from < n; from += SHIFTS) {
-    const PetscInt j = PetscMin(from, n - SHIFTS); /* the last ones overlap those before */
-    PetscReal c[SHIFTS][2];
-    CorrelateShifts(n, j, X, Y, c);
-    for (int i = 0; i < SHIFTS; i++) {
-      const PetscReal size = c[i][0] * c[i][0] + c[i][1] * c[i][1];
-      if (size <= (1 + SAME) * largest) continue; /* of a symmetric curve the first, whatever rounding does */
-      largest = size;
-      fit.shift = j + i;
-      fit.turn[0] = c[i][0];
-      fit.turn[1] = c[i][1];
-    }
+  for (PetscInt j = 0; j < n; j++) {
+    Lanes sum[2] = {{0}, {0}};
+    AddProducts(n - j, X + 2 * j, Y, sum);
+    AddProducts(j, X, Y + 2 * (n - j), sum);
+    const PetscReal c[2] = {LanesSum(sum[0]), LanesSum(sum[1])}, size = c[0] * c[0] + c[1] * c[1];
+    if (size <= (1 + SAME) * largest) continue; /* of a symmetric curve the first, whatever rounding does */
+    largest = size;
+    fit.shift = j;
+    fit.turn[0] = c[0];
+    fit.turn[1] = c[1];
   }
   const PetscReal size = PetscSqrtReal(PetscMax(largest, 0));
   for (int c = 0; c < 2; c++) fit.turn[c] = size > 0 ? fit.turn[c] / size : !c;

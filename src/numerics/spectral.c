@@ -87,9 +87,10 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
 }
 
 /* The points X less the first one, and after them the same numbers again, for a sum around the curve. */
-static inline void SpectralRepeat(Spectral s, const int each, const PetscScalar X[]) {
+static void SpectralRepeat(Spectral s, int each, const PetscScalar X[]) {
   const PetscInt n = each * s->n;
-  for (PetscInt k = 0; k < n; k++) s->twice[k] = s->twice[n + k] = X[k] - X[k % each];
+  for (int c = 0; c < each; c++)
+    for (PetscInt k = c; k < n; k += each) s->twice[k] = s->twice[n + k] = X[k] - X[c];
 }
 
 /* d^power X/dk^power, of those that are kept or new. */
@@ -173,21 +174,10 @@ static const PetscReal *SpectralShiftWeights(Spectral s, PetscReal phi) {
   return weight;
 }
 
-/* SpectralShift by sums; inlined, so that the compiler knows `each`. */
-static inline void SpectralShiftConvolved(Spectral s, const int each, PetscReal phi, const PetscScalar X[],
-                                          PetscScalar Y[]) {
-  const PetscInt n = s->n;
-  PetscReal first[2];
-  for (int c = 0; c < each; c++) first[c] = X[c];
-  SpectralRepeat(s, each, X);
-  CirculantConvolve(n, each, PETSC_FALSE, SpectralShiftWeights(s, phi), s->twice, s->sum);
-  for (PetscInt k = 0; k < n; k++)
-    for (int c = 0; c < each; c++) Y[each * k + c] = first[c] + s->sum[each * k + c];
-}
-
 void SpectralShift(Spectral s, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]) {
-  if (each == 1)
-    SpectralShiftConvolved(s, 1, phi, X, Y);
-  else
-    SpectralShiftConvolved(s, 2, phi, X, Y);
+  const PetscReal first[2] = {X[0], X[1]};
+  SpectralRepeat(s, each, X);
+  CirculantConvolve(s->n, each, PETSC_FALSE, SpectralShiftWeights(s, phi), s->twice, s->sum);
+  for (int c = 0; c < each; c++)
+    for (PetscInt k = c; k < each * s->n; k += each) Y[k] = first[c] + s->sum[k];
 }

@@ -68,7 +68,7 @@ static PetscErrorCode CheckpointFlow(H5File *file, PetscBool write, Scheme s, co
   PetscFunctionBeginUser;
   if (!write) PetscCall(H5GetInts(file, "flow", 1, &there));
   if (there != width) {
-    PetscCall(SchemeFlowOf(s, w, q->flow));
+    PetscCall(StreamFlowsOf(SchemeFlows(s), w, q->flow));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/flow", group));
@@ -85,7 +85,7 @@ static PetscErrorCode CheckpointFluid(H5File *file, PetscBool write, Scheme s, c
   PetscFunctionBeginUser;
   if (!w && !q->flow) PetscFunctionReturn(PETSC_SUCCESS);
   if (!w) PetscCall(DMGetGlobalVector(velocity, &w));
-  if (write && !q->w) PetscCall(SchemeVelocityOf(s, q, w));
+  if (write && !q->w) PetscCall(StreamFlowsVelocity(SchemeFlows(s), q->flow, w));
   PetscCall(CheckpointFields(file, write, s->fluid->grid, group, q, w));
   if (q->flow) PetscCall(CheckpointFlow(file, write, s, group, q, w));
   if (!q->w) PetscCall(DMRestoreGlobalVector(velocity, &w));

@@ -150,16 +150,37 @@ static PetscInt Order(Scheme s, const History *h) {
   return PetscMin(PetscMin(s->plan.order, h->n), even ? 3 : 2);
 }
 
-/* Largest |x - y| on this rank, of marker vectors; y is overwritten. */
+/* Largest |x - y| on this rank, of marker vectors; y is overwritten. Not a number where an entry is. */
 static PetscErrorCode LargestDifference(Scheme s, Vec x, Vec y, PetscReal *largest) {
   const PetscScalar *d;
   PetscFunctionBeginUser;
   *largest = 0;
   PetscCall(VecAXPY(y, -1, x));
   PetscCall(VecGetArrayRead(y, &d));
-  for (PetscInt k = 0; k < s->membrane->layout->n; k++)
-    *largest = PetscMax(*largest, PetscSqrtReal(PetscSqr(d[2 * k]) + PetscSqr(d[2 * k + 1])));
+  for (PetscInt k = 0; k < s->membrane->layout->n; k++) {
+    const PetscReal off = PetscSqrtReal(PetscSqr(d[2 * k]) + PetscSqr(d[2 * k + 1]));
+    *largest = off > *largest || off != off ? off : *largest;
+  }
   PetscCall(VecRestoreArrayRead(y, &d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* R0 of the smallest vesicle. */
+static PetscReal SmallestRadius(Membrane m) {
+  PetscReal R0 = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
+  return R0;
+}
+
+PetscErrorCode CoupledEstimate(Scheme s, PetscReal *error) {
+  Coupled *d = (Coupled *)s->data;
+  PetscReal found[2] = {0, 0};
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(d->Xstar, d->Y));
+  PetscCall(LargestDifference(s, d->next.X, d->Y, &found[0]));
+  if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  *error = found[1] > 0 ? NAN : found[0] / SmallestRadius(s->membrane);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,8 +214,9 @@ static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
+PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   Coupled *d = (Coupled *)s->data;
+  const char *failure = s->report.failure;
   History *h = &d->history;
   PetscFunctionBeginUser;
   s->state.dt = dt;
@@ -202,50 +224,46 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
   const BDF b = BDFCoefficients(d->order = Order(s, h), h->step);
   PetscCall(HistorySum(b.order, b.star, 1, h->X, d->Xstar));
   PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
-  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt, solved));
-  if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt));
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->scene->scheme.length_target) PetscCall(LawTarget(s->coupling->law, b.a0, d->Xhat, s->g));
   if (LawAimsAreas(s->coupling->law))
     PetscCall(LawTargetAreas(s->coupling->law, b.a0, d->Xstar, d->Xhat, s->background));
   PetscCall(TurnEdges(s, d));
   PetscCall(RightHandSides(s, d, &b));
-  *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
-  if (!*solved) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(InitialGuess(s, d));
   PetscCall(Solve(s, d));
-  *solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
-  if (*solved) PetscCall(MoveMarkers(s, d, b.a0));
-  if (*solved) PetscCall(MeasureStress(s, d));
-  if (*solved) PetscCall(ChooseNext(s, d));
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MoveMarkers(s, d, b.a0));
+  PetscCall(MeasureStress(s, d));
+  PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether the attempt has ended FAR times as far from its extrapolation X* as from the state it began with: a motion
    that stops within the step, which an extrapolation only carries on. */
 static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
-  const Membrane m = s->membrane;
-  PetscReal R0 = PETSC_MAX_REAL, off[2];
+  PetscReal began, error;
   PetscFunctionBeginUser;
   *overshot = PETSC_FALSE;
   if (d->order == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &off[0]));
-  PetscCall(VecCopy(d->Xstar, d->Y));
-  PetscCall(LargestDifference(s, d->next.X, d->Y, &off[1]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, off, 2, MPIU_REAL, MPI_MAX, m->layout->comm));
-  for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
-  *overshot = off[1] > FAR * off[0] && off[1] > STILL * R0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &began));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &began, 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
+  PetscCall(CoupledEstimate(s, &error));
+  *overshot = error > FAR * began / SmallestRadius(s->membrane) && error > STILL ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoupledFixedAttempt(Scheme s, PetscReal dt, PetscBool *solved) {
+PetscErrorCode CoupledFixedAttempt(Scheme s, PetscReal dt) {
   Coupled *d = (Coupled *)s->data;
   PetscBool overshot;
   PetscFunctionBeginUser;
-  PetscCall(CoupledAttempt(s, dt, solved));
-  if (!*solved || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CoupledAttempt(s, dt));
+  if (*s->report.failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Overshot(s, d, &overshot));
   if (!overshot) PetscFunctionReturn(PETSC_SUCCESS);
   s->plan.order = 1; /* of this step: CoupledAdvance says the next one's */
-  PetscCall(CoupledAttempt(s, dt, solved));
+  PetscCall(CoupledAttempt(s, dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

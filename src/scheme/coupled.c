@@ -6,13 +6,12 @@
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
-  PetscBool solved = PETSC_TRUE;
   PetscFunctionBeginUser;
   d->done = 0;
   d->graded = PETSC_TRUE;
-  for (int k = 0; k < 5 && solved; k++) {
-    PetscCall(CoupledFixedAttempt(s, parts[k] * dt, &solved));
-    if (solved) PetscCall(CoupledAdvance(s, parts[k] * dt));
+  for (int k = 0; k < 5 && !*s->report.failure; k++) {
+    PetscCall(CoupledFixedAttempt(s, parts[k] * dt));
+    if (!*s->report.failure) PetscCall(CoupledAdvance(s, parts[k] * dt));
     d->done += parts[k] * dt;
   }
   d->graded = PETSC_FALSE;
@@ -21,46 +20,17 @@ static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* max |X - X*|/R0 with R0 of the smallest vesicle; not a number where an X is. Marker vectors' own parts. */
-static PetscReal LargestError(Membrane m, const PetscScalar X[], const PetscScalar Xstar[]) {
-  PetscReal R0 = PETSC_MAX_REAL, largest = 0;
-  for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
-  for (PetscInt k = 0; k < m->layout->n; k++) {
-    const PetscReal x = X[2 * k] - Xstar[2 * k], y = X[2 * k + 1] - Xstar[2 * k + 1];
-    const PetscReal error = PetscSqrtReal(x * x + y * y) / R0;
-    largest = error > largest || error != error ? error : largest;
-  }
-  return largest;
-}
-
-/* The error estimate of the step in next, on all ranks. */
-static PetscErrorCode Estimate(Scheme s, Coupled *d, PetscReal *error) {
-  const PetscScalar *X, *Xstar;
-  PetscReal found[2] = {0, 0};
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(d->next.X, &X));
-  PetscCall(VecGetArrayRead(d->Xstar, &Xstar));
-  found[0] = LargestError(s->membrane, X, Xstar);
-  PetscCall(VecRestoreArrayRead(d->Xstar, &Xstar));
-  PetscCall(VecRestoreArrayRead(d->next.X, &X));
-  if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
-  *error = found[1] > 0 ? NAN : found[0];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A step of the given size, whatever it shows. */
 static PetscErrorCode FixedStep(Scheme s, Coupled *d, PetscReal dt) {
-  PetscBool solved;
   PetscFunctionBeginUser;
   if (!s->past && s->scene->scheme.order > 1 && s->scene->scheme.startup == STARTUP_GRADED) {
     PetscCall(GradedStart(s, d, dt));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(CoupledFixedAttempt(s, dt, &solved));
-  if (solved && s->state.dt_last > 0 && CouplingHasMembrane(s->coupling))
-    PetscCall(Estimate(s, d, &s->report.estimate));
-  if (solved) PetscCall(CoupledAdvance(s, dt));
+  PetscCall(CoupledFixedAttempt(s, dt));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->state.dt_last > 0 && CouplingHasMembrane(s->coupling)) PetscCall(CoupledEstimate(s, &s->report.estimate));
+  PetscCall(CoupledAdvance(s, dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,7 +64,7 @@ static PetscErrorCode Look(Scheme s, Coupled *d, StepTrial *trial) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, l->comm));
   trial->speed = found[0];
   trial->ratio = found[1];
-  PetscCall(Estimate(s, d, &trial->error));
+  PetscCall(CoupledEstimate(s, &trial->error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,7 +121,8 @@ static PetscErrorCode JudgedStep(Scheme s, Coupled *d, PetscReal speed, PetscRea
     FluidClearFailure(s->fluid);
     PetscCall(DecideSize(s, speed, most, &trial.dt));
     const StepPlan before = s->plan;
-    PetscCall(CoupledAttempt(s, trial.dt, &trial.solved));
+    PetscCall(CoupledAttempt(s, trial.dt));
+    trial.solved = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
     trial.order = d->order;
     if (trial.solved) PetscCall(Look(s, d, &trial));
     PetscCall(Decide(s, &trial, &verdict));
@@ -187,14 +158,13 @@ static PetscErrorCode CheckCourant(Scheme s, PetscReal dt, PetscReal speed) {
 static PetscErrorCode StartFlow(Scheme s, Coupled *d) {
   State *now = &s->state, *next = &d->next;
   const PetscReal dt = now->dt;
-  PetscBool solved;
   PetscFunctionBeginUser;
   if (!now->solid || s->fluid->steady || now->dt_last > 0) PetscFunctionReturn(PETSC_SUCCESS);
   FluidSetSteady(s->fluid, PETSC_TRUE);
-  PetscCall(CoupledAttempt(s, MOMENT * dt, &solved));
+  PetscCall(CoupledAttempt(s, MOMENT * dt));
   FluidSetSteady(s->fluid, PETSC_FALSE);
   now->dt = dt;
-  if (!solved) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   if (next->w) PetscCall(VecCopy(next->w, now->w));
   if (next->flow) PetscCall(VecCopy(next->flow, now->flow));
   PetscCall(VecCopy(next->sigma, now->sigma));
@@ -272,7 +242,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   Vec *markers[] = {&d->Xstar, &d->Xhat, &d->V, &d->Y, &d->P, &d->made_at, &d->moved};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverCreate(s->scene, s->coupling, &d->solver));
-  SchemeAddSolver(s, d->solver->ksp, NULL);
+  PetscCall(SchemeAddSolver(s, d->solver->ksp, NULL));
   PetscCall(SetUpConvection(s, d));
   PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));

@@ -30,22 +30,17 @@ static inline StreamFlows CoupledFlows(const Coupled *d) {
   return d->solver->coupling->mobility->stream->flows;
 }
 
-/* CoupledAttempt - solve one step of size dt from the state into next; false with report.failure when it cannot be.
-   Collective. */
-PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
-
-/* CoupledFixedAttempt - CoupledAttempt of a fixed step. A step whose motion stops within it is made again by backward
-   Euler, from the state itself in place of an extrapolation. Collective. */
-PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt, PetscBool *solved);
+/* CoupledAttempt - solve one step of size dt from the state into next, or say in report.failure why it cannot be.
+   CoupledFixedAttempt - of a fixed step: a step whose motion stops within it is made again by backward Euler, from the
+   state itself in place of an extrapolation. CoupledEstimate - error estimate of the step in next: max |X - X*|/R0, R0
+   of the smallest vesicle; not a number where an X is. Collective. */
+PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt);
+PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt);
+PETSC_EXTERN PetscErrorCode CoupledEstimate(Scheme scheme, PetscReal *error);
 
 /* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
    edges. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);
-
-/* CoupledRemember, CoupledRecall - what solvers keep from step to step, as
-   SchemeMemorySize numbers, the same on every rank, and made again from them. Collective. */
-PETSC_EXTERN PetscErrorCode CoupledRemember(Scheme scheme, PetscReal memory[]);
-PETSC_EXTERN PetscErrorCode CoupledRecall(Scheme scheme, const PetscReal memory[]);
 
 /* SchemeCreate_Coupled - give a scheme the operations of the unsplit step. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeCreate_Coupled(Scheme scheme);

@@ -9,8 +9,5 @@
 PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
 
-/* SchemeVelocityOf - w = the velocity of a state that has a flow. SchemeFlowOf - the flow of w. SchemeSquare - SUM u^2
-   over the faces of the state's velocity, which is not made. */
-PETSC_EXTERN PetscErrorCode SchemeVelocityOf(Scheme scheme, const State *state, Vec w);
-PETSC_EXTERN PetscErrorCode SchemeFlowOf(Scheme scheme, Vec w, Vec flow);
-PETSC_EXTERN PetscErrorCode SchemeSquare(Scheme scheme, PetscReal *square);
+/* SchemeFlows - what states that have a flow are turned into velocities by, borrowed. */
+PETSC_EXTERN StreamFlows SchemeFlows(Scheme scheme);

@@ -68,45 +68,30 @@ static PetscErrorCode CarryAll(const History *h, Membrane m, PetscInt count, con
 }
 
 PetscErrorCode HistoryCarry(History *h, Scheme s, PetscReal dt) {
-  const Vec X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
-  Vec U[BDF_STATES] = {s->state.U};
-  PetscReal led[BDF_STATES] = {s->state.dt_last};
+  Vec X[BDF_STATES], U[BDF_STATES];
   PetscFunctionBeginUser;
-  for (int j = 1; j < BDF_STATES; j++) {
-    U[j] = s->old[j - 1].U;
-    led[j] = s->old[j - 1].dt_last;
-  }
   h->n = PetscMin(s->past + 1, BDF_MOST);
+  h->solved = 0;
   h->step[0] = dt;
-  for (int j = 1; j < BDF_STATES; j++) h->step[j] = led[j - 1];
-  for (h->solved = 0; h->solved <= s->past && led[h->solved] > 0;) h->solved++;
+  for (int j = 0; j < BDF_STATES; j++) {
+    const State *q = j ? &s->old[j - 1] : &s->state;
+    X[j] = q->X;
+    U[j] = q->U;
+    if (h->solved == j && j <= s->past && q->dt_last > 0) h->solved++;
+    if (j + 1 < BDF_STATES) h->step[j + 1] = q->dt_last;
+  }
   PetscCall(FitLabelSpeeds(h, s));
   PetscCall(CarryAll(h, s->membrane, h->n, X, h->room, h->X));
   PetscCall(CarryAll(h, s->membrane, PetscMax(1, h->solved), U, h->room + BDF_MOST, h->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sum is made piece by piece, so that y is read from memory once. */
 PetscErrorCode HistorySum(PetscInt count, const PetscReal weight[], PetscReal scale, const Vec x[], Vec y) {
-  enum { PIECE = 1024 };
-  const PetscScalar *from[BDF_STATES];
-  PetscScalar *sum;
-  PetscInt n;
+  PetscReal scaled[BDF_STATES];
   PetscFunctionBeginUser;
-  PetscCall(VecGetLocalSize(y, &n));
-  PetscCall(VecGetArrayWrite(y, &sum));
-  for (PetscInt j = 0; j < count; j++) PetscCall(VecGetArrayRead(x[j], &from[j]));
-  for (PetscInt first = 0; first < n; first += PIECE) {
-    const PetscInt end = PetscMin(first + PIECE, n);
-    for (PetscInt j = 0; j < count; j++) {
-      const PetscReal w = scale * weight[j];
-      const PetscScalar *restrict part = from[j];
-      PetscScalar *restrict to = sum;
-      for (PetscInt k = first; k < end; k++) to[k] = j ? to[k] + w * part[k] : w * part[k];
-    }
-  }
-  for (PetscInt j = 0; j < count; j++) PetscCall(VecRestoreArrayRead(x[j], &from[j]));
-  PetscCall(VecRestoreArrayWrite(y, &sum));
+  for (PetscInt j = 0; j < count; j++) scaled[j] = scale * weight[j];
+  PetscCall(VecSet(y, 0));
+  PetscCall(VecMAXPY(y, count, scaled, (Vec *)x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

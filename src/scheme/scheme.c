@@ -1,5 +1,4 @@
 #include "scheme/scheme.h"
-#include "precondition/precondition.h"
 #include "scheme/coupled.h"
 #include "scheme/fields.h"
 #include "scheme/statechecks.h"
@@ -124,29 +123,6 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscInt SchemeMemorySize(Scheme s) {
-  const PetscInt block = ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY : 0;
-  return AGE_MEMORY + SharedShapesMemorySize(s->membrane->layout) + block;
-}
-
-/* Whether solvers have kept something: those of the scheme that goes on from several states, after a step. */
-static PetscBool SolversRemember(Scheme s) {
-  return s->old[0].X && s->state.dt_last > 0 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
-  if (SolversRemember(s)) PetscCall(CoupledRemember(s, memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
-  PetscFunctionBeginUser;
-  if (SolversRemember(s)) PetscCall(CoupledRecall(s, memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SchemeView(Scheme s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   if (s->ops.view) PetscCall(s->ops.view(s, viewer));
@@ -204,7 +180,8 @@ PetscErrorCode SchemeKineticEnergy(Scheme s, PetscReal *energy) {
   PetscReal norm;
   PetscFunctionBeginUser;
   if (s->state.fields == FIELDS_WITHOUT_BOTH || s->state.flow) {
-    PetscCall(SchemeSquare(s, &norm));
+    norm = s->report.measures.square;
+    if (s->state.flow) PetscCall(StreamFlowsSquare(SchemeFlows(s), s->state.flow, &norm));
     norm = PetscSqrtReal(norm);
   } else if (s->fluid->total) {
     Vec difference;

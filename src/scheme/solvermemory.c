@@ -1,5 +1,7 @@
 /* What the solver of unsplit steps has kept from earlier ones, for checkpoints. */
+#include "precondition/precondition.h"
 #include "scheme/coupled.h"
+#include "scheme/scheme.h"
 
 /* The obstacles' block where its factor may be of an earlier time or time step; else NULL. */
 static ObstacleBlock OlderBlock(Scheme s) {
@@ -12,10 +14,21 @@ static PetscInt AtBlock(Scheme s) {
   return AGE_MEMORY + SharedShapesMemorySize(s->membrane->layout);
 }
 
-PetscErrorCode CoupledRemember(Scheme s, PetscReal memory[]) {
+PetscInt SchemeMemorySize(Scheme s) {
+  return AtBlock(s) + (ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY : 0);
+}
+
+/* Whether solvers have kept something: those of the scheme that goes on from several states, after a step. */
+static PetscBool SolversRemember(Scheme s) {
+  return s->old[0].X && s->state.dt_last > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
   Coupled *d = (Coupled *)s->data;
   const Layout l = s->membrane->layout;
   PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
+  if (!SolversRemember(s)) PetscFunctionReturn(PETSC_SUCCESS);
   if (OlderBlock(s)) ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s));
   PreconditionerGetMemory(d->solver->preconditioner, memory);
   if (d->solver->preconditioner->shapes) {
@@ -62,12 +75,13 @@ static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoupledRecall(Scheme s, const PetscReal memory[]) {
+PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
   Coupled *d = (Coupled *)s->data;
   const Layout l = s->membrane->layout;
   const PetscReal a0 = memory[0];
   PetscScalar *X;
   PetscFunctionBeginUser;
+  if (!SolversRemember(s)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RecallBlock(s, memory + AtBlock(s)));
   if (d->solver->preconditioner->shapes)
     PetscCall(RecallSharedShapes(s, d->solver->preconditioner->shapes, memory + AGE_MEMORY));

@@ -67,19 +67,15 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forcings of two states, with the time coefficients of their solves. */
-static void SwapForcings(State *a, State *b) {
-  const Forcing forcing = a->forcing;
-  const PetscReal a0 = a->a0;
-  a->forcing = b->forcing;
-  b->forcing = forcing;
-  a->a0 = b->a0;
-  b->a0 = a0;
-}
-
 void StateSwap(State *a, State *b) {
+  const State kept = *a;
   Vec *one[VECTORS], *other[VECTORS];
-  if (a->forcing.values && b->forcing.values) SwapForcings(a, b);
+  if (a->forcing.values && b->forcing.values) {
+    a->forcing = b->forcing;
+    a->a0 = b->a0;
+    b->forcing = kept.forcing;
+    b->a0 = kept.a0;
+  }
   List(a, one);
   List(b, other);
   for (int k = 0; k < VECTORS; k++) {

@@ -1,7 +1,7 @@
 #include "scheme/statechecks.h"
 #include "base/agree.h"
+#include "curve/crossing.h"
 #include "scheme/films.h"
-#include "scheme/stepcommon.h"
 
 /* Limits of a shape's spectral tail: the part of its bending that is in the last third of its modes. With a tail above
    ROUGH the steady angle or frequency is off by 0.05 % or more, with a tail below SMOOTH by less than 0.001 % (reduced
@@ -14,6 +14,10 @@
 #define FIRST_JUDGED 4
 #define CORNER                                                                                                         \
   3 /* cells from each of two walls that meet, below which the near field does not hold without the box part */
+
+#define CONTACT 2 /* cells between membranes below which a warning is due */
+#define CLOSE_PARTS                                                                                                    \
+  1.5 /* edges between parts of one membrane below which a warning is due, with the exact near field */
 
 static PetscErrorCode CheckFinite(Scheme s) {
   static const char *const names[] = {"velocity", "pressure", "tension", "marker velocity"};
@@ -146,6 +150,86 @@ static PetscErrorCode WarnOfStep(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Distance of markers below which the fluid between vesicles v and w is not resolved: two cells. With the exact near
+   field there is no such distance between two vesicles, as finer points resolve the fluid between them, and parts of
+   one vesicle are resolved down to 1.5 edges. */
+static PetscReal Unresolved(Scheme s, PetscInt v, PetscInt w) {
+  if (!s->coupling->mobility->near) return CONTACT * s->fluid->grid->h;
+  return v == w ? CLOSE_PARTS * s->membrane->ds[v] : 0;
+}
+
+typedef struct {
+  Scheme scheme;
+  PetscMPIInt pair[2]; /* vesicles in contact, numbered from 1; 0, 0: none */
+} ContactSearch;
+
+/* Whether two near markers are a contact: nearer than Unresolved, and on one vesicle farther apart along the membrane
+   than twice that distance. */
+static PetscBool IsContact(void *context, PetscInt k, PetscInt l, const PetscReal d[2]) {
+  ContactSearch *c = (ContactSearch *)context;
+  const Scheme s = c->scheme;
+  const Layout layout = s->membrane->layout;
+  const PetscInt v = LayoutBody(layout, k), w = LayoutBody(layout, l);
+  const PetscReal near = Unresolved(s, v, w);
+  if (v == w && PetscMin(l - k, LayoutCount(layout, v) - (l - k)) * s->membrane->ds[v] <= 2 * near) return PETSC_FALSE;
+  if (d[0] * d[0] + d[1] * d[1] >= near * near) return PETSC_FALSE;
+  c->pair[0] = (PetscMPIInt)v + 1;
+  c->pair[1] = (PetscMPIInt)w + 1;
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode WarnOfContact(Scheme s, const PetscMPIInt pair[2]) {
+  const PetscBool exact = s->coupling->mobility->near ? PETSC_TRUE : PETSC_FALSE;
+  char who[64];
+  PetscFunctionBeginUser;
+  PetscCall(SchemeNamePair(s, pair[0] - 1, pair[1] - 1, "parts of vesicle %" PetscInt_FMT, sizeof(who), who));
+  PetscCall(SchemeWarn(
+      s,
+      "%s are closer than %.3g %s after step %" PetscInt_FMT ", time %g; %s not resolve the fluid between them: try %s",
+      who, exact ? CLOSE_PARTS : CONTACT, exact ? "edges" : "cells", s->state.step, (double)s->state.t,
+      exact ? "their markers do" : "the grid does", exact ? "more -vesicle_markers" : "finer -domain_cells"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckCrossing(Scheme s, const PetscScalar X[]) {
+  PetscInt pair[2];
+  char who[64];
+  PetscFunctionBeginUser;
+  PetscCall(FilmsCross(s, X, pair));
+  if (pair[0] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeNamePair(s, pair[0], pair[1], "parts of vesicle %" PetscInt_FMT, sizeof(who), who));
+  PetscCall(PetscSNPrintf(s->report.failure, sizeof(s->report.failure), "%s cross", who));
+  PetscCall(SchemeAdvise(s, "a smaller -time_step, more -vesicle_markers or finer -domain_cells"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A failure when membranes cross, one another or themselves, or when a fixed step has drained a film (films.h); a
+   warning, once when it begins, when they are so close that the fluid between them is not resolved. In a time in
+   proportion to the markers: each rank looks at the pairs whose first vesicle it owns, and the first contact of all
+   ranks counts. */
+static PetscErrorCode CheckContact(Scheme s) {
+  const Layout l = s->membrane->layout;
+  const PetscBool before = s->warnings.contact;
+  const PetscInt own[2] = {l->first, l->first + l->n};
+  ContactSearch search = {.scheme = s};
+  PetscReal reach = 0, found, period[2];
+  PetscMPIInt whose;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
+  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
+  if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
+  FluidSpecPeriods(&s->scene->fluid, period);
+  PetscCall(PairsWithin(l->M, s->work_all, own, period, reach, IsContact, &search));
+  PetscCall(AgreeMessage(l->comm, s->report.failure));
+  found = search.pair[0] ? 1 : 0;
+  PetscCall(AgreeLargest(l->comm, &found, &whose));
+  PetscCallMPI(MPI_Bcast(search.pair, 2, MPI_INT, whose, l->comm));
+  s->warnings.contact = search.pair[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (!*s->report.failure && !s->policy.adaptive) PetscCall(FilmsCheck(s)); /* else judged before it was accepted */
+  if (s->warnings.contact && !before && !*s->report.failure) PetscCall(WarnOfContact(s, search.pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Without scaled stencils the box part of the near field is right in corners too. */
 PetscErrorCode SchemeCheck(Scheme s) {
   const Grid g = s->fluid->grid;
@@ -159,7 +243,7 @@ PetscErrorCode SchemeCheck(Scheme s) {
   if (*failure)
     PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
   if (!*failure) PetscCall(CheckVesicles(s, CheckLimits, failure));
-  if (!*failure) PetscCall(SchemeCheckContact(s));
+  if (!*failure) PetscCall(CheckContact(s));
   if (!*failure && s->coupling->mobility->near) PetscCall(WarnOfVesicle(s, CheckSpectrum, &s->warnings.rough));
   if (!*failure && corners) PetscCall(WarnOfVesicle(s, CheckCorner, &s->warnings.corner));
   if (!*failure) PetscCall(FilmsWarn(s));

@@ -8,8 +8,3 @@
    membranes in contact, of markers that do not resolve their membrane or a film, of a vesicle in a corner of two walls
    and of a fixed step that is too large. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeCheck(Scheme scheme);
-
-/* SchemeCheckContact - a failure when membranes cross, one another or themselves, or when a fixed step has drained a
-   film (films.h); a warning, once when it begins, when they are so close that the fluid between them is not resolved.
-   In a time in proportion to the markers. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeCheckContact(Scheme scheme);

@@ -6,8 +6,12 @@ void SchemeImplement(Scheme s, const SchemeOps *ops, void *data) {
   s->data = data;
 }
 
-void SchemeAddSolver(Scheme s, KSP ksp, PC inner) {
+PetscErrorCode SchemeAddSolver(Scheme s, KSP ksp, PC inner) {
+  PetscFunctionBeginUser;
+  PetscCheck(s->solvers < SCHEME_SOLVERS, s->scene->comm, PETSC_ERR_PLIB, "a scheme has %d Krylov solvers at most",
+             SCHEME_SOLVERS);
   s->solver[s->solvers++] = (SchemeSolver){ksp, inner};
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void SchemeIterations(Scheme s, PetscInt tension, PetscInt bending) {
@@ -104,19 +108,17 @@ static PetscErrorCode CheckBodies(Scheme s, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t, PetscBool *placed) {
+PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t) {
+  const char *failure = s->report.failure;
   PetscFunctionBeginUser;
   PetscCall(CheckBodies(s, t));
-  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
-  if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, s->report.failure));
-  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
-  if (!*placed)
+  if (*failure)
     PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
-  if (!*placed || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeBackground(s, X, t));
-  *placed = *s->report.failure ? PETSC_FALSE : PETSC_TRUE;
-  if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingStretching(s->coupling, s->background, s->g));
   PetscCall(VecScale(s->g, -1));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -55,6 +55,7 @@ typedef struct _p_Scheme *Scheme;
 
 /* A Krylov solver of a scheme, borrowed. inner: the preconditioner where the KSP's own is a shell around it, else NULL.
  */
+#define SCHEME_SOLVERS 2
 typedef struct {
   KSP ksp;
   PC inner;
@@ -93,7 +94,7 @@ struct _p_Scheme {
   void *data;            /* the scheme's own */
   SchemeOps ops;
   PetscInt solvers;
-  SchemeSolver solver[2];
+  SchemeSolver solver[SCHEME_SOLVERS];
 };
 
 /* The times of a scheme's states and its plan for the next step, for a run that goes on from a checkpoint. */
@@ -106,18 +107,17 @@ typedef struct {
 /* SchemeSetTimes - take these times and this plan; a scheme of one state takes no old ones. Not collective. */
 PETSC_EXTERN void SchemeSetTimes(Scheme scheme, const SchemeTimes *times);
 
-/* SchemeImplement - give a scheme its operations and its own data. SchemeAddSolver - one more Krylov solver, at most 2,
-   that SchemeView, SchemeWriteOptions and SchemeGetKSP know by its options prefix. SchemeIterations - report the
-   iterations of the solves for tension and bending. Not collective. */
+/* SchemeImplement - give a scheme its operations and its own data. SchemeAddSolver - one more Krylov solver, at most
+   SCHEME_SOLVERS, that SchemeView, SchemeWriteOptions and SchemeGetKSP know by its options prefix. SchemeIterations -
+   report the iterations of the solves for tension and bending. Not collective. */
 PETSC_EXTERN void SchemeImplement(Scheme scheme, const SchemeOps *ops, void *data);
-PETSC_EXTERN void SchemeAddSolver(Scheme scheme, KSP ksp, PC inner);
+PETSC_EXTERN PetscErrorCode SchemeAddSolver(Scheme scheme, KSP ksp, PC inner);
 PETSC_EXTERN void SchemeIterations(Scheme scheme, PetscInt tension, PetscInt bending);
 
 /* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
    (CouplingPlace), and the background of time t there: background = u_inf(X), g minus the law's rows of the background.
-   placed is false with report.failure when a marker is too close to a wall or the flow has no value. Collective. */
-PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t,
-                                        PetscBool *placed);
+   report.failure says so when a marker is too close to a wall or the flow has no value. Collective. */
+PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t);
 
 /* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in
    w; report.failure where a flow of the caller's has none. Collective. */

@@ -74,6 +74,47 @@ static inline PetscErrorCode TestUnit(PetscInt k, Vec x) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TestApart - |x - y|/|y| in a norm; x is overwritten. TestRemoveMean - x less its mean. Collective. */
+static inline PetscErrorCode TestApart(NormType norm, Vec x, Vec y, PetscReal *apart) {
+  PetscReal size;
+  PetscFunctionBeginUser;
+  PetscCall(VecNorm(y, norm, &size));
+  PetscCall(VecAXPY(x, -1, y));
+  PetscCall(VecNorm(x, norm, apart));
+  *apart /= size;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestRemoveMean(Vec x) {
+  PetscScalar sum;
+  PetscInt n;
+  PetscFunctionBeginUser;
+  PetscCall(VecSum(x, &sum));
+  PetscCall(VecGetSize(x, &n));
+  PetscCall(VecShift(x, -sum / n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TestTransposed - |<A x, y> - <x, A^T y>| over the size of the terms in the sums; 1 where a product is zero.
+   Collective. */
+static inline PetscErrorCode TestTransposed(Mat A, Vec x, Vec y, PetscReal *error) {
+  Vec Ax, Aty;
+  PetscReal one, two, size[4];
+  PetscFunctionBeginUser;
+  PetscCall(TestVecs(y, &Ax, NULL));
+  PetscCall(TestVecs(x, &Aty, NULL));
+  PetscCall(MatMult(A, x, Ax));
+  PetscCall(MatMultTranspose(A, y, Aty));
+  PetscCall(VecDot(Ax, y, &one));
+  PetscCall(VecDot(x, Aty, &two));
+  PetscCall(VecNorm(Ax, NORM_2, &size[0]));
+  PetscCall(VecNorm(y, NORM_2, &size[1]));
+  PetscCall(VecNorm(Aty, NORM_2, &size[2]));
+  PetscCall(VecNorm(x, NORM_2, &size[3]));
+  *error = size[0] > 0 && size[2] > 0 ? PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]) : 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* CheckMain - main() of a test program. */
 static inline int CheckMain(int argc, char **argv, PetscErrorCode (*facts)(void)) {
   if (PetvesInitialize(&argc, &argv)) return 1;

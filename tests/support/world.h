@@ -116,6 +116,44 @@ static inline PetscErrorCode TestMarkerVecs(Layout layout, PetscInt each, ...) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* TestFill - entry (i, j) of the fields first .. last of x, a velocity (FIELD_U to FIELD_V) or a pressure, becomes
+   value(ctx, field, i, j), j counting the rows of all ranks. Not collective. */
+typedef PetscReal TestValue(const void *ctx, Field field, PetscInt i, PetscInt j);
+static inline PetscErrorCode TestFill(Grid g, Field first, Field last, TestValue value, const void *ctx, Vec x) {
+  PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(x, &a));
+  for (int f = first; f <= (int)last; f++)
+    for (PetscInt j = 0; j < g->rows[f]; j++)
+      for (PetscInt i = 0; i < g->columns[f]; i++)
+        a[GridRowStart(g, (Field)f, j) + i] = value(ctx, (Field)f, i, j + g->first);
+  PetscCall(VecRestoreArray(x, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TestBox - a fluid without vesicles and its Stokes solve, from an options text after PAPER_MEMBRANE. */
+typedef struct {
+  Scene scene;
+  Fluid fluid;
+  Stokes stokes;
+} TestBox;
+
+static inline PetscErrorCode TestBoxCreate(const char options[], TestBox *b) {
+  PetscFunctionBeginUser;
+  PetscCall(TestScene(options, &b->scene));
+  PetscCall(FluidCreate(&b->scene->fluid, &b->fluid));
+  PetscCall(StokesCreate(b->fluid, &b->stokes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode TestBoxDestroy(TestBox *b) {
+  PetscFunctionBeginUser;
+  PetscCall(StokesDestroy(&b->stokes));
+  PetscCall(FluidDestroy(&b->fluid));
+  PetscCall(SceneDestroy(&b->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* TestWorldPlace - the coupling at the initial markers for the time coefficient a0. */
 static inline PetscErrorCode TestWorldPlace(PetscReal a0, TestWorld *w) {
   char message[PETVES_MAX_MESSAGE];

@@ -7,10 +7,8 @@ PetscErrorCode FluidSolveHelmholtz(Fluid f, Vec b, Vec w) {
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(b, &ba));
   PetscCall(VecGetArray(w, &wa));
-  PetscCall(FastSolverBegin(f->solver[FIELD_U], ba));
-  PetscCall(FastSolverBegin(f->solver[FIELD_V], ba + v));
-  PetscCall(FastSolverEnd(f->solver[FIELD_U], wa));
-  PetscCall(FastSolverEnd(f->solver[FIELD_V], wa + v));
+  PetscCall(FastSolverSolve(f->solver[FIELD_U], ba, wa));
+  PetscCall(FastSolverSolve(f->solver[FIELD_V], ba + v, wa + v));
   PetscCall(VecRestoreArray(w, &wa));
   PetscCall(VecRestoreArrayRead(b, &ba));
   PetscFunctionReturn(PETSC_SUCCESS);

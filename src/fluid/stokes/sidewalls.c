@@ -1,5 +1,5 @@
 /* B mode by mode: the response of chi's mode k to a curl of 1 in row j' is g(|j - j'|) without walls in y and, between
-   them, with what makes chi = 0 there and chi even about them (streamfactors.c). With the matrix M of stream.c, t1(m)
+   them, with what makes chi = 0 there and chi even about them (stream.c). With the matrix M of stream.c, t1(m)
    and t2(m) the second row of M^m, s = -1, 1 for a pair of sources that mirror one another in y,
 
        g(m) = G1 t1(m) + G2 t2(m),   G1 = 1/((1 - r1^2)(1 - r1 r2)),   G2 = (1 + r1 r2) G1/(1 - r2^2),
@@ -11,7 +11,7 @@
 
 #define NEGLIGIBLE 1e-19 /* of the largest entry */
 
-PetscErrorCode SideWallsCreate(Grid g, RowTransform t, StreamFactors factors, SideWalls *out) {
+PetscErrorCode SideWallsCreate(Grid g, RowTransform t, ModeFactors factors, SideWalls *out) {
   const PetscInt w = factors->width, n = g->all_rows[FIELD_V], half = (n + 1) / 2;
   PetscReal *norm;
   SideWalls s;
@@ -126,7 +126,7 @@ static PetscErrorCode SideWallsFill(SideWalls s, PetscInt even, PetscReal alpha,
   for (PetscInt k = 0; k < s->factors->modes; k++) {
     const PetscReal lambda = s->factors->lambda[k];
     if (s->even[k] != even) continue;
-    SetDecays(2 * asinh(0.5 * PetscSqrtReal(lambda)), 2 * asinh(0.5 * PetscSqrtReal(lambda + alpha * h2 / nu)), &m);
+    SetDecays(ModeTheta(lambda), ModeTheta(lambda + alpha * h2 / nu), &m);
     const PetscReal weight = 2 * s->velocity[0][k] * s->curl[0][k] * s->factors->factor[k]; /* 2: of both walls */
     for (PetscInt d = 0; d < PetscMin(n, m.reach); d++) sum[d] += weight * Free(&m, d);
     AddWalls(s, &m, weight, B, p);

@@ -8,14 +8,15 @@
    (1 + c B) d = -c v_F. By the mirror symmetries in x and y this is four systems of half a wall's faces
    (docs/fluid.md, Side walls). */
 #pragma once
-#include "fluid/stokes/streamfactors.h"
+#include "fluid/transforms/modefactors.h"
+#include "fluid/transforms/rowtransform.h"
 
 #define SIDE_SYMMETRIES 4
 
 typedef struct _p_SideWalls *SideWalls;
 struct _p_SideWalls {
   Grid grid;              /* borrowed */
-  StreamFactors factors;  /* borrowed */
+  ModeFactors factors;    /* borrowed */
   PetscReal alpha;        /* coefficient that the inverses are for; -1 none yet */
   PetscInt faces, half;   /* faces of v along a wall, and those up to the middle */
   PetscInt *even;         /* [modes] whether a mode's chi is the same next to both walls */
@@ -30,7 +31,7 @@ struct _p_SideWalls {
 
 /* SideWallsCreate - for rows of a grid with walls both ways, t their transform, as long as the walls are in x. Not
    collective. */
-PETSC_EXTERN PetscErrorCode SideWallsCreate(Grid grid, RowTransform t, StreamFactors factors, SideWalls *walls);
+PETSC_EXTERN PetscErrorCode SideWallsCreate(Grid grid, RowTransform t, ModeFactors factors, SideWalls *walls);
 PETSC_EXTERN PetscErrorCode SideWallsDestroy(SideWalls *walls);
 
 /* SideWallsSet - for alpha (1/time) and nu (length^2/time), for which the factors are. Errors: no room. Not

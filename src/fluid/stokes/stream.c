@@ -3,14 +3,7 @@
 
        (nu/(r1 r2 h^4)) (1 - r1 S)(1 - r2 S)(1 - r1 S^-1)(1 - r2 S^-1) chi = curl of the force,
 
-   two recurrences upwards, y1_j = b_j + r1 y1_{j-1}, y2_j = y1_j + r2 y2_{j-1}, and the same downwards from y2 to z1
-   and z2, chi = (r1 r2 h^4/nu) z2. A state is a pair, Y = (y1, y2), Z = (z1, z2), and with M = [r1 0; r1 r2]
-
-       Y_j = M Y_{j-1} + (b_j, b_j),   Z_j = M Z_{j+1} + (y2_j, y2_j).
-
-   What comes into a slab of rows is known from what all slabs say by themselves, as in tridiagonal.c: Y leaves a slab
-   of m rows as its own and M^m times what came in, Z as its own, the gain times Y from below and M^m times Z from
-   above. */
+   the recurrences of modefactors.h upwards and downwards, chi = (r1 r2 h^4/nu) z2. */
 #include "fluid/stokes/stream.h"
 #include "fluid/stokes/streamloops.h"
 
@@ -25,9 +18,11 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   s->flux = flux;
   PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, &s->t));
   PetscCall(RowTransformSort(s->t)); /* slow decays come first */
-  PetscCall(StreamFactorsCreate(g, s->t, &s->factors));
-  PetscCall(StreamSlabsCreate(g, s->factors, &s->slabs));
-  PetscCall(PetscCalloc2(g->rows[FIELD_U], &s->means, s->slabs->width / STREAM_BLOCK, &s->last));
+  s->alpha = -1;
+  PetscCall(
+      ModeFactorsCreate(g, FIELD_V, s->t->width, s->t->lambda, s->t->scale, &s->factors)); /* nodes are level with v */
+  PetscCall(SlabsCreate(s->factors, &s->slabs));
+  PetscCall(PetscCalloc2(g->rows[FIELD_U], &s->means, s->slabs->width / MODE_BLOCK, &s->last));
   for (int k = 0; k < 5; k++) {
     PetscScalar **line[] = {&s->row[0], &s->row[1], &s->row[2], &s->curl, &s->zero};
     *line[k] = fftw_alloc_real(n);
@@ -53,20 +48,38 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   PetscCall(PetscFree2(s->means, s->last));
   PetscCall(StreamFlowsDestroy(&s->flows));
   PetscCall(StreamMeterDestroy(&s->meter));
-  PetscCall(StreamSlabsDestroy(&s->slabs));
-  PetscCall(StreamFactorsDestroy(&s->factors));
+  PetscCall(SlabsDestroy(&s->slabs));
+  PetscCall(ModeFactorsDestroy(&s->factors));
   PetscCall(RowTransformDestroy(&s->t));
   PetscCall(PetscFree(*stream));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define NEGLIGIBLE 50. /* a mode that has decayed by e^-50 = 2e-22 is zero to rounding */
+
+/* Walls, on which chi = 0, and chi is even: chi_{-1} = 0 and chi_{-2} = chi_0. Put into the recurrences,
+       y1_{-1} = -r1 z1_0 - r2 (2 + r1 r2) z2_0,   y2_{-1} = -r1 z1_0 - r2 z2_0,
+       z1_n = -r2/(1 + r1 r2) y2_{n-1},            z2_n = 0. */
+static void StreamSetFactors(Stream s) {
+  const ModeFactors f = s->factors;
+  const PetscReal h2 = PetscSqr(f->grid->h), nu = s->fluid->nu;
+  for (PetscInt k = s->side ? 0 : 2; k < f->modes; k++) { /* where x is periodic mode 0 is the mean flow */
+    const PetscReal theta[2] = {ModeTheta(f->lambda[k]), ModeTheta(f->lambda[k] + s->fluid->alpha * h2 / nu)};
+    const PetscReal r1 = PetscExpReal(-theta[0]), r2 = PetscExpReal(-theta[1]);
+    ModeFactorsSet(f, k, theta, f->scale[k] * r1 * r2 * h2 / nu, (ModePair){{{-r1, -r2 * (2 + r1 * r2)}, {-r1, -r2}}},
+                   (ModePair){{{0, -r2 / (1 + r1 * r2)}, {0, 0}}});
+  }
+  ModeFactorsReach(f, NEGLIGIBLE, f->grid->n[1]); /* r1 is the slower decay */
+}
+
 static PetscErrorCode StreamSetUp(Stream s) {
   const Fluid f = s->fluid;
   PetscFunctionBeginUser;
-  PetscCall(StreamSlabsReserve(s->slabs));
+  PetscCall(SlabsReserve(s->slabs));
   if (s->mean) PetscCall(TridiagonalReserve(s->mean));
-  if (s->factors->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
-  StreamFactorsSet(s->factors, f->alpha, f->nu);
+  if (s->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
+  s->alpha = f->alpha;
+  StreamSetFactors(s);
   if (s->side) PetscCall(SideWallsSet(s->side, f->alpha, f->nu));
   if (s->mean) PetscCall(TridiagonalSetCoefficients(s->mean, f->alpha, f->nu, f->solver[FIELD_U]->singular));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,32 +124,31 @@ static void SideVelocity(Stream s, const StreamRows *rows) {
 
 /* y += that of the forces on these faces, with nothing coming in from below; `state` as after Gather. */
 static void AddSideForces(Stream s, PetscBool measured) {
-  const StreamSlabs q = s->slabs;
+  const Slabs q = s->slabs;
   const SideWalls side = s->side;
   const PetscInt w = q->width, first = s->fluid->grid->first;
   (void)PetscArrayzero(q->state, 2 * w);
   for (PetscInt j = 0; j < q->rows; j++) {
     const PetscReal force[2] = {side->d[0][first + j], side->d[1][first + j]};
-    const PetscInt stored = q->stored[j] * STREAM_BLOCK;
+    const PetscInt stored = q->stored[j] * MODE_BLOCK;
     if (measured) StreamMeterForce(s->meter, j, force[0] + force[1]);
     (void)PetscArrayzero(q->y + j * w + stored, w - stored);
-    q->stored[j] = w / STREAM_BLOCK;
+    SlabsStore(q, j, w / MODE_BLOCK);
     StreamRowUpWalls(s->factors, force, side->curl, q->state, q->y + j * w);
   }
 }
 
 /* Walls in x hold the fluid: what came in is taken off y again, their forces are added, and all is closed anew. */
 static PetscErrorCode HoldSides(Stream s, const StreamRows *rows, PetscBool measured) {
-  const StreamSlabs q = s->slabs;
-  const PetscReal *last = q->own + 2 * q->width;
+  const Slabs q = s->slabs;
   PetscReal none = 0;
   PetscFunctionBeginUser;
   SideVelocity(s, rows);
   PetscCall(SideWallsForces(s->side, s->fluid->nu));
-  StreamSlabsReopen(q);
+  SlabsReopen(q);
   AddSideForces(s, measured);
-  for (PetscInt k = 0; k < 2 * q->width; k++) q->state[k] += last[k];
-  PetscCall(StreamSlabsClose(q, &none));
+  SlabsAddLast(q);
+  PetscCall(SlabsClose(q, &none));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -145,9 +157,8 @@ static PetscErrorCode StreamSweeps(Stream s, const StreamRows *rows, PetscBool m
   PetscReal sum;
   PetscFunctionBeginUser;
   StreamGather(s, rows, measured);
-  if (s->mean) PetscCall(TridiagonalBegin(s->mean));
   sum = s->mean_v;
-  PetscCall(StreamSlabsClose(s->slabs, &sum));
+  PetscCall(SlabsClose(s->slabs, &sum));
   if (s->mean) PetscCall(MeanFlow(s, sum));
   if (s->side) PetscCall(HoldSides(s, rows, measured));
   StreamScatter(s, rows, measured);

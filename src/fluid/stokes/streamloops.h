@@ -1,7 +1,7 @@
 /* The loops of stream.c over one row, of entries or of modes. */
 #pragma once
 #include "base/lanes.h"
-#include "fluid/stokes/streamfactors.h"
+#include "fluid/transforms/modefactors.h"
 
 /* h times the curl of a force on the nodes of a row: v of the row, u of the rows below and above it. Where the last
    node is on a wall it is left out. */
@@ -36,7 +36,7 @@ static inline void StreamRowUp(PetscInt width, const PetscReal *restrict r1, con
 
 /* One row upwards for forces on the faces next to two walls: y += y2, where curl has the modes of the curl of a unit
    force at either wall; Y = (y1, y2) is updated. */
-static inline void StreamRowUpWalls(const StreamFactors f, const PetscReal force[2], PetscReal *const curl[2],
+static inline void StreamRowUpWalls(const ModeFactors f, const PetscReal force[2], PetscReal *const curl[2],
                                     PetscReal *restrict Y, PetscReal *restrict y) {
   const PetscReal *restrict a = curl[0], *restrict b = curl[1], *restrict r1 = f->r[0], *restrict r2 = f->r[1];
   PetscReal *restrict y1 = Y, *restrict y2 = Y + f->width;
@@ -48,7 +48,7 @@ static inline void StreamRowUpWalls(const StreamFactors f, const PetscReal force
 }
 
 /* One row downwards: `count` modes of chi/h, of which y is zero from mode `forced` on; Z = (z1, z2) is updated. */
-static inline void StreamRowDown(const StreamFactors f, PetscInt forced, PetscInt count, const PetscReal *restrict y,
+static inline void StreamRowDown(const ModeFactors f, PetscInt forced, PetscInt count, const PetscReal *restrict y,
                                  PetscReal *restrict Z, PetscReal *restrict chi) {
   const PetscReal *restrict r1 = f->r[0], *restrict r2 = f->r[1], *restrict factor = f->factor;
   PetscReal *restrict z1 = Z, *restrict z2 = Z + f->width;

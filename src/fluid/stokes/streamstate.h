@@ -5,7 +5,6 @@
 #include "fluid/stokes/sidewalls.h"
 #include "fluid/stokes/streamflow.h"
 #include "fluid/stokes/streammeter.h"
-#include "fluid/stokes/streamslabs.h"
 #include "fluid/transforms/tridiagonal.h"
 
 typedef struct _p_Stream *Stream;
@@ -29,14 +28,13 @@ typedef struct {
   const PetscScalar *source; /* [rows][n_x] G^T of the means and of what `velocity` adds; NULL: zero */
 } StreamRows;
 
-#define STREAM_BLOCK TRIDIAGONAL_BLOCK
-
 struct _p_Stream {
   Fluid fluid;
   ZeroFlux flux;            /* borrowed, or NULL */
   RowTransform t;           /* along the nodes of a row */
-  StreamFactors factors;    /* constants of the recurrences */
-  StreamSlabs slabs;        /* y of the rows, and what comes into the slab */
+  PetscReal alpha;          /* coefficient that `factors` are for; -1: none yet */
+  ModeFactors factors;      /* constants of the recurrences */
+  Slabs slabs;              /* y of the rows, and what comes into the slab */
   SideWalls side;           /* NULL where x is periodic */
   PetscInt *last;           /* [blocks] the last row on the way down in which a block has y */
   PetscInt kept;            /* blocks of modes in which Z of the last row has not decayed */
@@ -54,7 +52,7 @@ struct _p_Stream {
    go to the meter too. Not collective. */
 PETSC_EXTERN void StreamGather(Stream stream, const StreamRows *rows, PetscBool measured);
 
-/* StreamBeginDown - start the way down at the uppermost row of the slab, after StreamSlabsClose. StreamNodeModes - the
+/* StreamBeginDown - start the way down at the uppermost row of the slab, after SlabsClose. StreamNodeModes - the
    modes of chi/h of row j of nodes, the next row downwards, and their number; they are written to `into` unless that is
    NULL. squares: the meter gets them. Not collective. */
 PETSC_EXTERN void StreamBeginDown(Stream stream);

@@ -4,29 +4,28 @@
 #include "fluid/stokes/streamstate.h"
 
 void StreamBeginDown(Stream s) {
-  const StreamSlabs q = s->slabs;
-  s->kept = q->width / STREAM_BLOCK;
+  const Slabs q = s->slabs;
+  s->kept = q->width / MODE_BLOCK;
   (void)PetscArraycpy(q->state, q->above, 2 * q->width);
   for (PetscInt b = 0; b < s->kept; b++) s->last[b] = q->rows;
 }
 
 /* Blocks of modes in which Z has not decayed in row j, where y has `stored` blocks; Z is zero in the others. */
 static PetscInt KeptBlocks(Stream s, PetscInt j, PetscInt stored) {
-  const StreamSlabs q = s->slabs;
+  const Slabs q = s->slabs;
   PetscInt blocks = PetscMax(s->kept, stored);
   for (PetscInt b = 0; b < stored; b++) s->last[b] = j;
   for (; blocks > stored && s->factors->reach[blocks - 1] <= s->last[blocks - 1] - j; blocks--)
-    for (int c = 0; c < 2; c++)
-      (void)PetscArrayzero(q->state + c * q->width + (blocks - 1) * STREAM_BLOCK, STREAM_BLOCK);
+    for (int c = 0; c < 2; c++) (void)PetscArrayzero(q->state + c * q->width + (blocks - 1) * MODE_BLOCK, MODE_BLOCK);
   return blocks;
 }
 
 PetscInt StreamNodeModes(Stream s, PetscInt j, PetscBool squares, PetscReal *into, PetscReal **modes) {
-  const StreamSlabs q = s->slabs;
-  const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / STREAM_BLOCK : q->stored[j];
+  const Slabs q = s->slabs;
+  const PetscInt w = q->width, all = s->t->width, stored = j < 0 ? w / MODE_BLOCK : q->stored[j];
   const PetscReal *y = j < 0 ? q->below + w : q->y + j * w;
   s->kept = KeptBlocks(s, j, stored);
-  const PetscInt forced = PetscMin(stored * STREAM_BLOCK, all), count = PetscMin(s->kept * STREAM_BLOCK, all);
+  const PetscInt forced = PetscMin(stored * MODE_BLOCK, all), count = PetscMin(s->kept * MODE_BLOCK, all);
   *modes = squares ? StreamMeterNodes(s->meter, count) : into ? into : s->t->modes;
   StreamRowDown(s->factors, forced, count, y, q->state, *modes);
   return count;

@@ -16,23 +16,23 @@ static const PetscReal *CurlModes(Stream s, const PetscScalar low[], const Petsc
 
 /* y of row j from the modes of its curl, and from y below it. */
 static void ForcedRow(Stream s, PetscInt j, const PetscReal curl[], const PetscReal below[]) {
-  const StreamSlabs q = s->slabs;
+  const Slabs q = s->slabs;
   const PetscInt modes = s->t->width, w = q->width;
   PetscReal *y = q->y + j * w;
   StreamRowUp(modes, s->factors->r[0], s->factors->r[1], curl, below, q->state, y);
   for (PetscInt k = modes; k < w; k++) y[k] = 0;
-  q->stored[j] = w / STREAM_BLOCK;
+  SlabsStore(q, j, w / MODE_BLOCK);
 }
 
 /* y of row j, `since` rows above the last force, in the blocks of modes that have not decayed. */
 static void FreeRow(Stream s, PetscInt j, PetscInt since) {
-  const StreamSlabs q = s->slabs;
+  const Slabs q = s->slabs;
   PetscInt blocks = j > 0 ? q->stored[j - 1] : 0;
   for (; blocks > 0 && s->factors->reach[blocks - 1] <= since; blocks--)
-    (void)PetscArrayzero(q->state + (blocks - 1) * STREAM_BLOCK, STREAM_BLOCK);
-  q->stored[j] = blocks;
+    (void)PetscArrayzero(q->state + (blocks - 1) * MODE_BLOCK, MODE_BLOCK);
+  SlabsStore(q, j, blocks);
   if (blocks)
-    StreamRowUp(blocks * STREAM_BLOCK, s->factors->r[0], s->factors->r[1], q->zero, q->y + (j - 1) * q->width, q->state,
+    StreamRowUp(blocks * MODE_BLOCK, s->factors->r[0], s->factors->r[1], q->zero, q->y + (j - 1) * q->width, q->state,
                 q->y + j * q->width);
 }
 
@@ -74,7 +74,7 @@ static PetscReal PastSum(Stream s, const StreamRows *rows, PetscInt j, int comp)
 /* The way up, with nothing coming in from below. It begins at the nodes below the first row of u with a force. */
 void StreamGather(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
-  const StreamSlabs q = s->slabs;
+  const Slabs q = s->slabs;
   const PetscInt n = g->n[0], w = q->width, first = PetscMax(rows->forced[0] - 1, 0), end = rows->forced[1];
   const PetscScalar *low = NULL;
   s->mean_v = 0;
@@ -95,6 +95,6 @@ void StreamGather(Stream s, const StreamRows *rows, PetscBool measured) {
     else
       FreeRow(s, j, j - end + 1);
   }
-  const PetscInt out = q->rows > 0 ? q->stored[q->rows - 1] * STREAM_BLOCK : 0;
+  const PetscInt out = q->rows > 0 ? q->stored[q->rows - 1] * MODE_BLOCK : 0;
   if (out) (void)PetscArraycpy(q->state + w, q->y + (q->rows - 1) * w, out);
 }

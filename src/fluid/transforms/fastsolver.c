@@ -84,27 +84,11 @@ PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0, PetscReal n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]) {
-  PetscFunctionBeginUser;
-  PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
-  s->b = b;
-  if (s->begin) PetscCall(s->begin(s, b));
-  PetscCall(PhaseEnd());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]) {
-  PetscFunctionBeginUser;
-  PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
-  PetscCall(s->end(s, x));
-  s->solves++;
-  PetscCall(PhaseEnd());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
   PetscFunctionBeginUser;
-  PetscCall(FastSolverBegin(s, b));
-  PetscCall(FastSolverEnd(s, x));
+  PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
+  PetscCall(s->solve(s, b, x));
+  s->solves++;
+  PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,10 +26,8 @@ struct _p_FastSolver {
   PetscInt solves;      /* solves so far */
   SolveFailure failure; /* the first one since it was last cleared */
   void *data;           /* the back end's own */
-  const PetscScalar *b; /* right-hand side of the solve under way, a local array */
-  PetscErrorCode (*setcoefficients)(FastSolver);              /* NULL: nothing to set up */
-  PetscErrorCode (*begin)(FastSolver, const PetscScalar b[]); /* send what other ranks need of b; NULL: nothing */
-  PetscErrorCode (*end)(FastSolver, PetscScalar x[]);         /* the solution, a local array that may be b */
+  PetscErrorCode (*setcoefficients)(FastSolver);                               /* NULL: nothing to set up */
+  PetscErrorCode (*solve)(FastSolver, const PetscScalar b[], PetscScalar x[]); /* local arrays; x may be b */
   PetscErrorCode (*destroy)(FastSolver);
 };
 
@@ -45,11 +43,6 @@ PETSC_EXTERN PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0
 /* FastSolverSolve - one scalar solve on local arrays of the field (columns x rows); x may be b. Counted.
    Collective. Errors: see `failure` above. */
 PETSC_EXTERN PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]);
-
-/* FastSolverBegin, FastSolverEnd - FastSolverSolve in two halves, so that messages of one field travel while the next
-   field is solved. b must not change until the solve ends. Each Begin has its End, in the same order on every rank. */
-PETSC_EXTERN PetscErrorCode FastSolverBegin(FastSolver s, const PetscScalar b[]);
-PETSC_EXTERN PetscErrorCode FastSolverEnd(FastSolver s, PetscScalar x[]);
 
 /* FastSolverClearFailure - forget the failure of earlier solves. FastSolverCount - count a solve of the same work that
    was made elsewhere. Not collective. */

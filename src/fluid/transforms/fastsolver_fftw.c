@@ -60,12 +60,12 @@ static PetscErrorCode WarnSlow(Grid g, Field f, int dir) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode End_FFTW(FastSolver s, PetscScalar x[]) {
+static PetscErrorCode Solve_FFTW(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
   Transform *t = (Transform *)s->data;
   Grid g = s->grid;
   const PetscInt local = g->columns[s->field] * g->rows[s->field], ny = g->all_rows[s->field];
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(t->buffer, s->b, local));
+  PetscCall(PetscArraycpy(t->buffer, b, local));
   fftw_execute(t->forward);
   for (ptrdiff_t i = 0; i < t->columns; i++) {
     const PetscReal base = s->a0 - s->nu * t->lambda[0][t->first_column + i], nu = s->nu, scale = t->scale;
@@ -119,7 +119,7 @@ PetscErrorCode FastSolverCreate_FFTW(FastSolver s) {
   PetscCall(StartFFTW());
   PetscCall(PetscNew(&t));
   s->data = t;
-  s->end = End_FFTW;
+  s->solve = Solve_FFTW;
   s->destroy = Destroy_FFTW;
   for (int dir = 0; dir < 2; dir++) {
     Kinds(g, s->field, dir, &forward[1 - dir], &backward[1 - dir], &logical[dir]);

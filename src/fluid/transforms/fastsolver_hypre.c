@@ -39,12 +39,12 @@ static PetscErrorCode NoteFailure(FastSolver s, KSP ksp, KSPConvergedReason why)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode End_Hypre(FastSolver s, PetscScalar x[]) {
+static PetscErrorCode Solve_Hypre(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
   Assembled *d = (Assembled *)s->data;
   const PetscInt n = s->grid->columns[s->field] * s->grid->rows[s->field];
   KSPConvergedReason why;
   PetscFunctionBeginUser;
-  PetscCall(PetscArraymove(x, s->b, n));
+  PetscCall(PetscArraymove(x, b, n));
   PetscCall(VecPlaceArray(d->x, x));
   if (s->nu < 0) PetscCall(VecScale(d->x, -1));
   if (s->singular) PetscCall(MatNullSpaceRemove(d->constants, d->x));
@@ -79,7 +79,7 @@ PetscErrorCode FastSolverCreate_Hypre(FastSolver s) {
   PetscCall(PetscNew(&d));
   s->data = d;
   s->setcoefficients = SetCoefficients_Hypre;
-  s->end = End_Hypre;
+  s->solve = Solve_Hypre;
   s->destroy = Destroy_Hypre;
   PetscCall(VecCreateMPIWithArray(g->comm, 1, n, PETSC_DETERMINE, NULL, &d->x));
   PetscCall(MatNullSpaceCreate(g->comm, PETSC_TRUE, 0, NULL, &d->constants));

@@ -15,25 +15,19 @@ static PetscErrorCode SetCoefficients_Tridiagonal(FastSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Begin_Tridiagonal(FastSolver s, const PetscScalar b[]) {
+static PetscErrorCode Solve_Tridiagonal(FastSolver s, const PetscScalar b[], PetscScalar x[]) {
   Solver *q = (Solver *)s->data;
+  const PetscInt rows = s->grid->rows[s->field], columns = s->grid->columns[s->field];
   PetscFunctionBeginUser;
   PetscCall(TridiagonalReserve(q->d));
-  for (PetscInt j = 0; j < s->grid->rows[s->field]; j++) {
-    RowTransformForward(q->t, b + j * s->grid->columns[s->field]);
+  for (PetscInt j = 0; j < rows; j++) {
+    RowTransformForward(q->t, b + j * columns);
     TridiagonalUp(q->d, j, q->t->modes);
   }
-  PetscCall(TridiagonalBegin(q->d));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode End_Tridiagonal(FastSolver s, PetscScalar x[]) {
-  Solver *q = (Solver *)s->data;
-  PetscFunctionBeginUser;
   PetscCall(TridiagonalEnd(q->d));
-  for (PetscInt j = s->grid->rows[s->field] - 1; j >= 0; j--) {
+  for (PetscInt j = rows - 1; j >= 0; j--) {
     TridiagonalDown(q->d, j, q->t->modes);
-    RowTransformBackward(q->t, x + j * s->grid->columns[s->field]);
+    RowTransformBackward(q->t, x + j * columns);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -52,8 +46,7 @@ PetscErrorCode FastSolverCreate_Tridiagonal(FastSolver s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&q));
   s->data = q;
-  s->begin = Begin_Tridiagonal;
-  s->end = End_Tridiagonal;
+  s->solve = Solve_Tridiagonal;
   s->setcoefficients = SetCoefficients_Tridiagonal;
   s->destroy = Destroy_Tridiagonal;
   PetscCall(RowTransformCreate(s->grid, s->field, &q->t));

@@ -18,7 +18,7 @@ static PetscErrorCode WallAndInside(Grid g, Vec r, PetscReal *wall, PetscReal *i
         const int across = 1 - f; /* direction across the component */
         const PetscInt at = across ? j + g->first : i, last = g->n[across] - 1;
         const int k = g->wall[across] && (at == 0 || at == last) ? 0 : 1;
-        most[k] = PetscMax(most[k], PetscAbsReal(a[(f == FIELD_V ? GridLocalU(g) : 0) + j * g->columns[f] + i]));
+        most[k] = PetscMax(most[k], PetscAbsReal(a[GridRowStart(g, (Field)f, j) + i]));
       }
   PetscCall(VecRestoreArrayRead(r, &a));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, g->comm));
@@ -32,16 +32,12 @@ typedef struct {
 } Fields;
 
 static PetscErrorCode FieldsCreate(Fluid f, Fields *x) {
-  PetscReal sum;
-  PetscInt n;
   PetscFunctionBeginUser;
   PetscCall(TestFieldVecs(f->grid->velocity, &x->r_u, &x->u, &x->left_u, NULL));
   PetscCall(TestFieldVecs(f->grid->da[FIELD_P], &x->r_p, &x->p, &x->left_p, NULL));
   PetscCall(TestRandomVec(1, x->r_u));
   PetscCall(TestRandomVec(2, x->r_p));
-  PetscCall(VecSum(x->r_p, &sum));
-  PetscCall(VecGetSize(x->r_p, &n));
-  PetscCall(VecShift(x->r_p, -sum / n)); /* what walls at rest, or a period, can let in */
+  PetscCall(TestRemoveMean(x->r_p)); /* what walls at rest, or a period, can let in */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,36 +91,31 @@ static PetscErrorCode CheckInPlace(const char name[], Stokes stokes, Fields *x) 
 static PetscErrorCode CheckBox(const char grid[], const char bc[]) {
   static const PetscReal coefficients[] = {128, 0.75, 128};
   char options[512], name[256];
-  Scene scene;
-  Fluid fluid;
-  Stokes stokes;
+  TestBox box;
   Fields x;
   PetscInt before;
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(options, sizeof(options), "%s %s -vesicle_shape none -fluid_viscosity 0.7", grid, bc));
-  PetscCall(TestScene(options, &scene));
-  PetscCall(FluidCreate(&scene->fluid, &fluid));
-  PetscCall(StokesCreate(fluid, &stokes));
+  PetscCall(TestBoxCreate(options, &box));
+  const Fluid fluid = box.fluid;
   PetscCall(FieldsCreate(fluid, &x));
   for (int k = 0; k < 3; k++) { /* there and back: nothing of an earlier a0 may stay */
     PetscCall(FluidSetTimeCoefficient(fluid, coefficients[k]));
     for (int with = 0; with < 2; with++) {
       PetscCall(PetscSNPrintf(name, sizeof(name), "%s %s a0 = %g%s", strstr(grid, "-domain_cells") + 14, bc,
                               (double)coefficients[k], with ? "" : ", r_p = 0"));
-      PetscCall(CheckSolve(name, fluid, stokes, with ? PETSC_TRUE : PETSC_FALSE, PETSC_FALSE, &x));
+      PetscCall(CheckSolve(name, fluid, box.stokes, with ? PETSC_TRUE : PETSC_FALSE, PETSC_FALSE, &x));
       if (!fluid->grid->wall[0]) continue;
-      PetscCall(CheckSolve(name, fluid, stokes, with ? PETSC_TRUE : PETSC_FALSE, PETSC_TRUE, &x));
+      PetscCall(CheckSolve(name, fluid, box.stokes, with ? PETSC_TRUE : PETSC_FALSE, PETSC_TRUE, &x));
     }
   }
   before = FluidCountSolves(fluid);
-  PetscCall(CheckInPlace(name, stokes, &x));
+  PetscCall(CheckInPlace(name, box.stokes, &x));
   if (fluid->grid->wall[1])
     CHECK(FluidCountSolves(fluid) == before + 10, "%s: five scalar solves each, two twice and one for r_p", name);
   else
     CHECK(FluidCountSolves(fluid) == before + 6, "%s: three scalar solves each", name);
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(FluidDestroy(&fluid));
-  PetscCall(SceneDestroy(&scene));
+  PetscCall(TestBoxDestroy(&box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

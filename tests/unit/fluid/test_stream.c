@@ -15,13 +15,12 @@ typedef struct {
 
 static const PetscScalar *StreamForce(void *ctx, Field f, PetscInt j, PetscScalar work[]) {
   const Arrays *a = (const Arrays *)ctx;
-  return f == FIELD_U ? RowAt(&a->u, j) : a->force + GridLocalU(a->grid) + j * a->grid->columns[f];
+  return f == FIELD_U ? RowAt(&a->u, j) : a->force + GridRowStart(a->grid, f, j);
 }
 
 static void Velocity(void *ctx, Field f, PetscInt j, PetscScalar row[]) {
   Arrays *a = (Arrays *)ctx;
-  const PetscInt n = a->grid->columns[f];
-  (void)PetscArraycpy(a->velocity + (f == FIELD_V ? GridLocalU(a->grid) : 0) + j * n, row, n);
+  (void)PetscArraycpy(a->velocity + GridRowStart(a->grid, f, j), row, a->grid->columns[f]);
 }
 
 /* u of the force r by rows, of states before and into a flow as `rows` says. */
@@ -40,18 +39,10 @@ static PetscErrorCode SolveRows(Fluid fluid, Stokes stokes, StreamRows rows, Vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Solve(Fluid fluid, Stokes stokes, const PetscInt forced[2], const PetscInt wanted[2], Vec r,
-                            Vec u, StreamMeasures *measures) {
-  const StreamRows rows = {.forced = {forced[0], forced[1]}, .wanted = {wanted[0], wanted[1]}};
-  PetscFunctionBeginUser;
-  PetscCall(SolveRows(fluid, stokes, rows, r, u, measures));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A box and vectors on its grid: a force, the Stokes solve's velocity and pressure, and the velocity by rows. */
 typedef struct {
   const char *options;
-  Scene scene;
+  TestBox box;
   Fluid fluid;
   Stokes stokes;
   Vec r, p, exact, u;
@@ -59,21 +50,19 @@ typedef struct {
 
 static PetscErrorCode BoxCreate(const char options[], Box *b) {
   PetscFunctionBeginUser;
+  PetscCall(TestBoxCreate(options, &b->box));
   b->options = options;
-  PetscCall(TestScene(options, &b->scene));
-  PetscCall(FluidCreate(&b->scene->fluid, &b->fluid));
-  PetscCall(StokesCreate(b->fluid, &b->stokes));
+  b->fluid = b->box.fluid;
+  b->stokes = b->box.stokes;
   PetscCall(TestFieldVecs(b->fluid->grid->velocity, &b->r, &b->exact, &b->u, NULL));
   PetscCall(TestFieldVecs(b->fluid->grid->da[FIELD_P], &b->p, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode BoxDestroy(Box *b) {
-  PetscFunctionBeginUser;
-  PetscCall(StokesDestroy(&b->stokes));
-  PetscCall(FluidDestroy(&b->fluid));
-  PetscCall(SceneDestroy(&b->scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* The local rows of the rows first .. end - 1 of all. */
+static void OwnRows(Grid g, PetscInt first, PetscInt end, PetscInt window[2]) {
+  window[0] = PetscMin(PetscMax(first - g->first, 0), g->rows[FIELD_U]);
+  window[1] = PetscMax(window[0], PetscMin(end - g->first, g->rows[FIELD_U]));
 }
 
 /* Velocities of both fields outside local rows window[0] .. window[1] - 1 become zero. */
@@ -166,40 +155,39 @@ static PetscErrorCode SolveExactly(Box *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* |x - y| is less than the tolerance times |y|; x is overwritten. */
+static PetscErrorCode CheckSame(const Box *b, const char what[], PetscReal tolerance, Vec x, Vec y) {
+  PetscReal error;
+  PetscFunctionBeginUser;
+  PetscCall(TestApart(NORM_2, x, y, &error));
+  CHECK(error < tolerance, "%s, alpha = %g: %s, %.1e", b->options, (double)b->fluid->alpha, what, (double)error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Forces and wanted velocities between two rows of all, first and end. */
 static PetscErrorCode CheckRows(Box *b, PetscInt first, PetscInt end) {
   const Grid g = b->fluid->grid;
-  const PetscInt rows = g->rows[FIELD_U], low = PetscMin(PetscMax(first - g->first, 0), rows),
-                 window[2] = {low, PetscMax(low, PetscMin(end - g->first, rows))}, before = FluidCountSolves(b->fluid);
+  const PetscInt before = FluidCountSolves(b->fluid);
+  StreamRows rows = {0};
   PetscReal norm, error;
   StreamMeasures measures;
   PetscFunctionBeginUser;
+  OwnRows(g, first, end, rows.forced);
+  OwnRows(g, first, end, rows.wanted);
   PetscCall(TestRandomVec(3, b->r));
-  PetscCall(Keep(g, window, b->r));
+  PetscCall(Keep(g, rows.forced, b->r));
   PetscCall(SolveExactly(b));
   PetscCall(VecSet(b->u, 0));
-  PetscCall(Solve(b->fluid, b->stokes, window, window, b->r, b->u, NULL));
+  PetscCall(SolveRows(b->fluid, b->stokes, rows, b->r, b->u, NULL));
   CHECK(FluidCountSolves(b->fluid) == before + 3, "%s: counted as one scalar solve", b->options);
-  PetscCall(Solve(b->fluid, b->stokes, window, window, b->r, b->u, &measures));
+  PetscCall(SolveRows(b->fluid, b->stokes, rows, b->r, b->u, &measures));
   PetscCall(CheckMeasures(b, PETSC_TRUE, &measures));
   PetscCall(VecNorm(b->exact, NORM_2, &norm));
-  PetscCall(Keep(g, window, b->exact));
+  PetscCall(Keep(g, rows.wanted, b->exact));
   PetscCall(VecAXPY(b->u, -1, b->exact));
   PetscCall(VecNorm(b->u, NORM_2, &error));
   CHECK(error < TOLERANCE * norm, "%s, rows %d to %d, alpha = %g: the Stokes solve's velocity, %.1e", b->options,
         (int)first, (int)end, (double)b->fluid->alpha, (double)(error / norm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* |x - y| is less than the tolerance times |y|; x is overwritten. */
-static PetscErrorCode CheckSame(const Box *b, const char what[], PetscReal tolerance, Vec x, Vec y) {
-  PetscReal error, norm;
-  PetscFunctionBeginUser;
-  PetscCall(VecNorm(y, NORM_2, &norm));
-  PetscCall(VecAXPY(x, -1, y));
-  PetscCall(VecNorm(x, NORM_2, &error));
-  CHECK(error < tolerance * norm, "%s, alpha = %g: %s, %.1e", b->options, (double)b->fluid->alpha, what,
-        (double)(error / norm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,14 +256,14 @@ static PetscErrorCode CheckAdded(Box *b, StreamRows rows) {
 static PetscErrorCode CheckPast(Box *b, PetscInt first, PetscInt end) {
   const Grid g = b->fluid->grid;
   const StreamFlows flows = StokesStream(b->stokes)->flows;
-  const PetscInt rows = g->rows[FIELD_U], low = PetscMin(PetscMax(first - g->first, 0), rows),
-                 high = PetscMax(low, PetscMin(end - g->first, rows));
   StreamPast past;
-  StreamRows these = {.forced = {low, high}, .wanted = {low, high}, .past = &past};
+  StreamRows these = {.past = &past};
   StreamMeasures measures;
   PetscReal norm;
   Vec uhat, shown;
   PetscFunctionBeginUser;
+  OwnRows(g, first, end, these.forced);
+  OwnRows(g, first, end, these.wanted);
   PetscCall(TestVecs(b->r, &uhat, &shown, NULL));
   PetscCall(StreamFlowsCreateVec(flows, &these.flow));
   PetscCall(MakePast(b, &past, uhat));
@@ -312,7 +300,7 @@ static PetscErrorCode CheckBox(const char options[]) {
     PetscCall(CheckPast(&b, n / 3, n / 2));
     PetscCall(CheckPast(&b, 0, n));
   }
-  PetscCall(BoxDestroy(&b));
+  PetscCall(TestBoxDestroy(&b.box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,48 +4,23 @@
 
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
 
-/* |<A x, y> - <x, A^T y>| over the size of the terms in the sums, for a MatShell between distributed vectors. */
-static PetscErrorCode PairError(Mat A, Vec x, Vec y, PetscReal *error) {
-  Vec Ax, Aty;
-  PetscReal one, two, size[4];
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(y, &Ax, NULL));
-  PetscCall(TestVecs(x, &Aty, NULL));
-  PetscCall(MatMult(A, x, Ax));
-  PetscCall(MatMultTranspose(A, y, Aty));
-  PetscCall(VecDot(Ax, y, &one));
-  PetscCall(VecDot(x, Aty, &two));
-  PetscCall(VecNorm(Ax, NORM_2, &size[0]));
-  PetscCall(VecNorm(y, NORM_2, &size[1]));
-  PetscCall(VecNorm(Aty, NORM_2, &size[2]));
-  PetscCall(VecNorm(x, NORM_2, &size[3]));
-  *error = PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]);
-  CHECK(size[0] > 0 && size[2] > 0, "   both products give something: %.3e %.3e", size[0], size[2]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* |A x - B x| / |A x| on a vector of the shell's domain. */
+/* |A x - B x| / |B x| on a vector of the shell's domain. */
 static PetscErrorCode Difference(Mat A, Mat B, Vec x, PetscReal *error) {
   Vec a, b;
-  PetscReal size;
   PetscFunctionBeginUser;
   PetscCall(TestVecs(x, &a, &b, NULL));
   PetscCall(MatMult(A, x, a));
   PetscCall(MatMult(B, x, b));
-  PetscCall(VecNorm(a, NORM_2, &size));
-  PetscCall(VecAXPY(a, -1, b));
-  PetscCall(VecNorm(a, NORM_2, error));
-  *error /= size;
+  PetscCall(TestApart(NORM_2, a, b, error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One component's part of a velocity as a vector of its own DMDA, for the assembled operator. */
 static PetscErrorCode HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscReal nu, Vec w, Vec Hw,
                                           PetscReal *error) {
-  const PetscInt n = g->columns[f] * g->rows[f], start = f == FIELD_V ? GridLocalU(g) : 0;
+  const PetscInt n = g->columns[f] * g->rows[f];
   const PetscScalar *wa;
   PetscScalar *xa;
-  PetscReal size;
   Mat A;
   Vec x, y, Ax;
   PetscFunctionBeginUser;
@@ -54,15 +29,12 @@ static PetscErrorCode HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscRe
   for (int k = 0; k < 2; k++) {
     PetscCall(VecGetArrayRead(k ? Hw : w, &wa));
     PetscCall(VecGetArray(k ? y : x, &xa));
-    PetscCall(PetscArraycpy(xa, wa + start, n));
+    PetscCall(PetscArraycpy(xa, wa + GridRowStart(g, f, 0), n));
     PetscCall(VecRestoreArray(k ? y : x, &xa));
     PetscCall(VecRestoreArrayRead(k ? Hw : w, &wa));
   }
   PetscCall(MatMult(A, x, Ax));
-  PetscCall(VecNorm(Ax, NORM_2, &size));
-  PetscCall(VecAXPY(Ax, -1, y));
-  PetscCall(VecNorm(Ax, NORM_2, error));
-  *error /= size;
+  PetscCall(TestApart(NORM_2, Ax, y, error));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -77,9 +49,9 @@ static PetscErrorCode CheckFluid(const char name[], Fluid f) {
   PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
   PetscCall(TestRandomVec(1, w));
   PetscCall(TestRandomVec(2, p));
-  PetscCall(PairError(f->G, p, w, &error));
+  PetscCall(TestTransposed(f->G, p, w, &error));
   CHECK(error < TOLERANCE, "%s: G and G^T adjoint, error %.1e", name, error);
-  PetscCall(PairError(f->D, w, p, &error));
+  PetscCall(TestTransposed(f->D, w, p, &error));
   CHECK(error < TOLERANCE, "%s: D and D^T adjoint, error %.1e", name, error);
   PetscCall(GridAssemble(g, FIELD_P, 0, -1, &A));
   PetscCall(Difference(f->L, A, p, &error));
@@ -94,8 +66,9 @@ static PetscErrorCode CheckFluid(const char name[], Fluid f) {
 }
 
 static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
+  const Coupling c = t->coupling;
   Vec w, x, sigma;
-  PetscReal error;
+  PetscReal error = 0;
   PetscFunctionBeginUser;
   PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
   PetscCall(TestMarkerVecs(t->layout, 2, &x, NULL));
@@ -103,12 +76,15 @@ static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
   PetscCall(TestRandomVec(3, w));
   PetscCall(TestRandomVec(4, x));
   PetscCall(TestRandomVec(5, sigma));
-  PetscCall(PairError(t->coupling->markers->E, w, x, &error));
-  CHECK(error < TOLERANCE, "%s: E and E^T adjoint, error %.1e", name, error);
-  PetscCall(PairError(t->coupling->S, sigma, w, &error));
-  CHECK(error < TOLERANCE, "%s: S and S^T adjoint, error %.1e", name, error);
-  PetscCall(PairError(t->coupling->B, x, w, &error));
-  CHECK(error < TOLERANCE, "%s: B and B^T adjoint, error %.1e", name, error);
+  const struct {
+    const char *name;
+    Mat A;
+    Vec from, to;
+  } pairs[] = {{"E", c->markers->E, w, x}, {"S", c->S, sigma, w}, {"B", c->B, x, w}};
+  for (int k = 0; k < 3; k++) {
+    PetscCall(TestTransposed(pairs[k].A, pairs[k].from, pairs[k].to, &error));
+    CHECK(error < TOLERANCE, "%s: %s and its transpose are adjoint, error %.1e", name, pairs[k].name, error);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -57,7 +57,7 @@ static PetscErrorCode GNormEnergy(TestWorld *r, PetscReal *energy) {
   PetscCall(TestVecs(q->w, &w, NULL));
   PetscCall(TestVecs(q->X, &X, NULL));
   if (old->flow)
-    PetscCall(SchemeVelocityOf(r->scheme, old, w));
+    PetscCall(StreamFlowsVelocity(SchemeFlows(r->scheme), old->flow, w));
   else
     PetscCall(VecCopy(old->w, w));
   PetscCall(VecAXPBY(w, 2, -1, q->w));

@@ -53,13 +53,6 @@ static PetscReal Speed(PetscInt n, const PetscReal X[], const PetscReal velocity
   return (au * rr - ru * ar) / (aa * rr - ar * ar);
 }
 
-/* The same on all ranks: a vector of the one vesicle. */
-static PetscErrorCode Gather(TestWorld *w, Vec x, PetscReal all[]) {
-  PetscFunctionBeginUser;
-  PetscCall(LayoutGatherVec(w->layout, x, all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode CheckFormula(const char options[], PetscReal dt, PetscBool turns, int order) {
   static const PetscReal a[4][4] = {{0}, {1, 1}, {3. / 2, 2, -1. / 2}, {11. / 6, 3, -3. / 2, 1. / 3}};
   const char *last = strstr(options, "-vesicle_bending");
@@ -73,8 +66,9 @@ static PetscErrorCode CheckFormula(const char options[], PetscReal dt, PetscBool
   for (int k = 0; k < 32; k++) PetscCall(SchemeStep(w.scheme, dt));
   for (int k = 0; k < FIRST; k++) PetscCall(PetscMalloc1(2 * n, &X[k]));
   PetscCall(PetscMalloc5(2 * n, &U[0], 2 * n, &U[1], 2 * n, &found, 2 * n, &shifted, 6 * n, &work));
-  for (int k = 0; k < FIRST; k++) PetscCall(Gather(&w, k ? w.scheme->old[k - 1].X : w.scheme->state.X, X[k]));
-  for (int k = 0; k < 2; k++) PetscCall(Gather(&w, k ? w.scheme->old[0].U : w.scheme->state.U, U[k]));
+  for (int k = 0; k < FIRST; k++)
+    PetscCall(LayoutGatherVec(w.layout, k ? w.scheme->old[k - 1].X : w.scheme->state.X, X[k]));
+  for (int k = 0; k < 2; k++) PetscCall(LayoutGatherVec(w.layout, k ? w.scheme->old[0].U : w.scheme->state.U, U[k]));
   if (turns) speed = Speed(n, X[1], U[1], work);
   Derivative(n, X[0], work);
   for (PetscInt i = 0; i < 2 * n; i++) found[i] = a[order][0] * X[0][i] / dt + speed * work[i];

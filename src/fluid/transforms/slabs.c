@@ -1,17 +1,17 @@
-#include "fluid/stokes/streamslabs.h"
-#include "fluid/transforms/tridiagonal.h"
+#include "fluid/transforms/slabs.h"
 
-#define BLOCK TRIDIAGONAL_BLOCK
+#define BLOCK MODE_BLOCK
 
-PetscErrorCode StreamSlabsCreate(Grid g, StreamFactors factors, StreamSlabs *out) {
+PetscErrorCode SlabsCreate(ModeFactors factors, Slabs *out) {
+  const Grid g = factors->grid;
   const PetscInt w = factors->width, size = g->size, part = (w + size - 1) / size;
-  StreamSlabs s;
+  Slabs s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
   s->grid = g;
   s->factors = factors;
-  s->rows = g->rows[FIELD_V]; /* nodes are level with v */
+  s->rows = g->rows[factors->field];
   s->width = w;
   s->part = part;
   s->begin = PetscMin(g->rank * part, w);
@@ -28,8 +28,8 @@ PetscErrorCode StreamSlabsCreate(Grid g, StreamFactors factors, StreamSlabs *out
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StreamSlabsDestroy(StreamSlabs *slabs) {
-  StreamSlabs s = *slabs;
+PetscErrorCode SlabsDestroy(Slabs *slabs) {
+  Slabs s = *slabs;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->grid->size > 1) PetscCall(PetscFree4(s->send, s->all, s->Y, s->Z));
@@ -40,14 +40,14 @@ PetscErrorCode StreamSlabsDestroy(StreamSlabs *slabs) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StreamSlabsReserve(StreamSlabs s) {
+PetscErrorCode SlabsReserve(Slabs s) {
   PetscFunctionBeginUser;
-  if (!s->y) PetscCall(PetscMalloc1(PetscMax(s->rows, 1) * s->width, &s->y));
+  if (!s->y) PetscCall(PetscCalloc1(PetscMax(s->rows, 1) * s->width, &s->y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The first Z and the last Y of this slab where nothing comes in from outside, for the other ranks. */
-static void SlabsSummarise(StreamSlabs s) {
+static void SlabsSummarise(Slabs s) {
   const PetscInt w = s->width;
   for (PetscInt b = 0; b < w / BLOCK; b++) {
     const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
@@ -68,7 +68,7 @@ static void SlabsSummarise(StreamSlabs s) {
 }
 
 /* out += A in, a matrix and a pair for each of the modes that this rank closes. */
-static void SlabsAddProduct(StreamSlabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
+static void SlabsAddProduct(Slabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
   const PetscInt w = s->width, part = s->part;
   const PetscReal *A = matrix + s->begin;
   for (PetscInt k = 0; k < s->count; k++) {
@@ -77,13 +77,13 @@ static void SlabsAddProduct(StreamSlabs s, const PairMatrix matrix, const PetscR
   }
 }
 
-static void SlabsProduct(StreamSlabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
+static void SlabsProduct(Slabs s, const PairMatrix matrix, const PetscReal in[], PetscReal out[]) {
   (void)PetscArrayzero(out, 2 * s->part);
   SlabsAddProduct(s, matrix, in, out);
 }
 
 /* From Y below the first slab to Y below every slab and above the last one. */
-static void SlabsCarryUp(StreamSlabs s) {
+static void SlabsCarryUp(Slabs s) {
   const PetscMPIInt size = s->grid->size;
   const PetscInt pair = 2 * s->part;
   for (PetscMPIInt q = 0; q < size; q++) {
@@ -94,7 +94,7 @@ static void SlabsCarryUp(StreamSlabs s) {
 }
 
 /* From Z above the last slab to Z above every slab and in the first row of all. */
-static void SlabsCarryDown(StreamSlabs s) {
+static void SlabsCarryDown(Slabs s) {
   const PetscMPIInt size = s->grid->size;
   const PetscInt pair = 2 * s->part;
   for (PetscMPIInt q = size - 1; q >= 0; q--) {
@@ -106,8 +106,8 @@ static void SlabsCarryDown(StreamSlabs s) {
 }
 
 /* What comes into every slab. At walls, Z above all rows follows from Y there, and Y below all rows from the Z of no Y
-   at the bottom. At a seam, Y below all rows follows from Y above them, and Z above from Z below (streamfactors.c). */
-static void SlabsMatchEnds(StreamSlabs s) {
+   at the bottom. At a seam, Y below all rows follows from Y above them, and Z above from Z below (modefactors.c). */
+static void SlabsMatchEnds(Slabs s) {
   const PetscInt pair = 2 * s->part;
   PetscReal *Y = s->Y, *Z = s->Z + (s->grid->size - 1) * pair;
   (void)PetscArrayzero(Y, pair);
@@ -129,11 +129,11 @@ static void SlabsMatchEnds(StreamSlabs s) {
 }
 
 /* Number of modes of part q. */
-static PetscInt SlabsPartCount(StreamSlabs s, PetscMPIInt q) {
+static PetscInt SlabsPartCount(Slabs s, PetscMPIInt q) {
   return PetscMax(0, PetscMin(s->part, s->width - q * s->part));
 }
 
-static PetscErrorCode SlabsExchange(StreamSlabs s) {
+static PetscErrorCode SlabsExchange(Slabs s) {
   const PetscMPIInt n = (PetscMPIInt)s->message;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Alltoall(s->send, n, MPIU_REAL, s->all, n, MPIU_REAL, s->grid->comm));
@@ -141,7 +141,7 @@ static PetscErrorCode SlabsExchange(StreamSlabs s) {
 }
 
 /* Send each rank its part of the modes of this slab. */
-static PetscErrorCode SlabsToParts(StreamSlabs s) {
+static PetscErrorCode SlabsToParts(Slabs s) {
   const PetscInt w = s->width, part = s->part;
   PetscFunctionBeginUser;
   if (s->grid->size == 1) PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,7 +156,7 @@ static PetscErrorCode SlabsToParts(StreamSlabs s) {
 }
 
 /* Send each slab what comes into it, in the modes of this part. */
-static PetscErrorCode SlabsToSlabs(StreamSlabs s) {
+static PetscErrorCode SlabsToSlabs(Slabs s) {
   const PetscInt w = s->width, part = s->part;
   PetscFunctionBeginUser;
   if (s->grid->size == 1) PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,7 +175,7 @@ static PetscErrorCode SlabsToSlabs(StreamSlabs s) {
 }
 
 /* Blocks of modes in which anything comes in from below. */
-static PetscInt SlabsBlocksBelow(StreamSlabs s) {
+static PetscInt SlabsBlocksBelow(Slabs s) {
   const PetscReal *y1 = s->below, *y2 = y1 + s->width;
   PetscInt k = s->width;
   while (k > 0 && y1[k - 1] == 0 && y2[k - 1] == 0) k--;
@@ -183,7 +183,7 @@ static PetscInt SlabsBlocksBelow(StreamSlabs s) {
 }
 
 /* y2 of the rows += factor times the contribution of Y from below. */
-static void SlabsAddBelow(StreamSlabs s, PetscReal factor) {
+static void SlabsAddBelow(Slabs s, PetscReal factor) {
   const PetscInt w = s->width, blocks = SlabsBlocksBelow(s);
   const PetscReal *below = s->below;
   for (PetscInt b = 0; b < blocks; b++) {
@@ -209,7 +209,7 @@ static void SlabsAddBelow(StreamSlabs s, PetscReal factor) {
   }
 }
 
-PetscErrorCode StreamSlabsClose(StreamSlabs s, PetscReal *sum) {
+PetscErrorCode SlabsClose(Slabs s, PetscReal *sum) {
   PetscFunctionBeginUser;
   SlabsSummarise(s);
   s->own[4 * s->width] = *sum;
@@ -222,6 +222,6 @@ PetscErrorCode StreamSlabsClose(StreamSlabs s, PetscReal *sum) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void StreamSlabsReopen(StreamSlabs s) {
+void SlabsReopen(Slabs s) {
   SlabsAddBelow(s, -1);
 }
