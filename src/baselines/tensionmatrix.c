@@ -1,7 +1,8 @@
 #include "baselines/tensionmatrix.h"
 
-#define ENTRIES (12 * KERNEL_MAX_POINTS * KERNEL_MAX_POINTS) /* of a column: two ends, two components, face and cells  \
-                                                              */
+#define ENTRIES                                                                                                        \
+  (12 * KERNEL_MAX_POINTS * KERNEL_MAX_POINTS) /* of a column: two ends, two components, face and cells                \
+                                                */
 
 /* The root of -1/diag(L) over h. */
 static PetscReal CellFactor(Grid g, const PetscInt cell[2]) {
