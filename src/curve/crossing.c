@@ -104,11 +104,9 @@ PetscErrorCode PairsWithin(PetscInt n, const PetscReal X[], const PetscInt part[
 /* A search for edges by their middles: edges that cross have middles no farther apart than the longest edge is long. */
 typedef struct {
   const CurveSet *set;
-  PetscInt *curve;   /* [points] the curve that a point is on */
-  PetscInt *next;    /* [points] number of the point where an edge ends */
-  PetscReal *end;    /* [points][2] where an edge ends, next to its start; an open curve's last edge has no length */
-  PetscReal *middle; /* [points][2] middles of the edges */
-  PetscReal longest; /* length of the longest edge */
+  PetscInt *curve;       /* [points] the curve that a point is on */
+  PetscReal *middle;     /* [points][2] middles of the edges */
+  PetscReal longest;     /* length of the longest edge */
   PetscInt (*passed)[2]; /* [count] pairs of curves that do not cross although their polygons do */
   PetscInt count;
   size_t capacity;
@@ -144,15 +142,16 @@ static PetscErrorCode CurvesCrossTruly(EdgeSearch *s, const PetscInt pair[2], Pe
 
 static PetscBool EdgesCross(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   EdgeSearch *s = (EdgeSearch *)context;
-  const PetscReal *X = s->set->X, *a = X + 2 * i, *b = s->end + 2 * i;
-  const PetscInt pair[2] = {s->curve[i], s->curve[j]};
-  PetscReal p[2], q[2];
+  const PetscReal *X = s->set->X, *a = X + 2 * i;
+  const PetscInt pair[2] = {s->curve[i], s->curve[j]}, *start = s->set->start + pair[0];
+  PetscReal b[2], p[2], q[2];
   PetscBool cross;
-  if (s->next[i] == j || s->next[j] == i) return PETSC_FALSE;
+  if (pair[0] == pair[1] && (j == i + 1 || j == i + start[1] - start[0] - 1)) return PETSC_FALSE; /* neighbours */
+  if (!CurveSetWalk(s->set, pair[0], i, 1, b) || !CurveSetWalk(s->set, pair[1], j, 1, q)) return PETSC_FALSE;
   for (int dir = 0; dir < 2; dir++) { /* the image of edge j that is nearest to edge i */
     const PetscReal shift = s->middle[2 * i + dir] + d[dir] - s->middle[2 * j + dir];
     p[dir] = X[2 * j + dir] + shift;
-    q[dir] = s->end[2 * j + dir] + shift;
+    q[dir] += shift;
   }
   const PetscBool alike = PetscHypotReal(d[0], d[1]) <= ALIKE * s->longest ? PETSC_TRUE : PETSC_FALSE;
   if (!alike &&
@@ -166,21 +165,19 @@ PetscErrorCode CurvesCross(const CurveSet *set, PetscInt pair[2]) {
   const PetscInt *start = set->start, *part = set->part, n = start[set->curves];
   const PetscInt points[2] = {part ? start[part[0]] : 0, part ? start[part[1]] : n};
   const PetscReal *X = set->X;
-  EdgeSearch s = {.set = set, .pair = {-1, -1}};
+  EdgeSearch s = {.set = set, .longest = CurveLongestEdge(set), .pair = {-1, -1}};
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &s.curve, n, &s.next, 2 * n, &s.end, 2 * n, &s.middle));
+  PetscCall(PetscMalloc2(n, &s.curve, 2 * n, &s.middle));
   for (PetscInt v = 0; v < set->curves; v++)
     for (PetscInt k = start[v]; k < start[v + 1]; k++) {
-      PetscReal *end = s.end + 2 * k;
+      PetscReal end[2];
       s.curve[k] = v;
-      s.next[k] = k + 1 < start[v + 1] ? k + 1 : start[v];
       if (!CurveSetWalk(set, v, k, 1, end)) PetscCall(PetscArraycpy(end, X + 2 * k, 2));
       for (int dir = 0; dir < 2; dir++) s.middle[2 * k + dir] = 0.5 * (X[2 * k + dir] + end[dir]);
-      s.longest = PetscMax(s.longest, PetscHypotReal(end[0] - X[2 * k], end[1] - X[2 * k + 1]));
     }
   PetscCall(PairsWithin(n, s.middle, points, set->period, s.longest, EdgesCross, &s));
   PetscCall(s.error);
-  PetscCall(PetscFree4(s.curve, s.next, s.end, s.middle));
+  PetscCall(PetscFree2(s.curve, s.middle));
   PetscCall(PetscFree(s.passed));
   PetscCall(PetscArraycpy(pair, s.pair, 2));
   PetscFunctionReturn(PETSC_SUCCESS);
