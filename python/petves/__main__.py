@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import io
 import os
+import re
 import sys
 from importlib import import_module
-from typing import Any
+from typing import Any, Callable
 
 from petves.errors import Error
 from petves.program import become
@@ -43,19 +44,47 @@ def _add_look(command: argparse.ArgumentParser, *names: str) -> None:
         command.add_argument(f"--{name}", **known[name])
 
 
+def _numbers(count: int) -> Callable[[str], list[float]]:
+    """Return what reads so many numbers with commas between them."""
+
+    def read(text: str) -> list[float]:
+        values = [float(word) for word in text.split(",")]
+        if len(values) != count:
+            raise argparse.ArgumentTypeError(
+                f"{text}: {len(values)} numbers; allowed: {count} with commas between them"
+            )
+        return values
+
+    read.__name__ = f"{count} numbers"
+    return read
+
+
 def _add_pictures(commands: argparse._SubParsersAction) -> None:
     plot = commands.add_parser("plot", help="draw a run's folder into pictures in that folder")
     plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    plot.add_argument(
+        "--time", type=float, help="field and tension, or what is asked for, at the saved time nearest to it"
+    )
+    plot.add_argument("--column", nargs="+", default=[], metavar="NAME", help="columns of series.csv over time")
+    plot.add_argument("--field", nargs="+", default=[], metavar="NAME", help="membranes over fields: vorticity, ...")
+    plot.add_argument(
+        "--point", nargs="+", default=[], type=_numbers(2), metavar="X,Y", help="u, v, p at points over time"
+    )
+    plot.add_argument("--line", type=_numbers(4), metavar="X,Y,X,Y", help="u, v, p along a line")
+    plot.add_argument("--walls", action="store_true", help="the shear stress along the walls")
     _add_look(plot, "format", "dpi", "width", "cmap", "follow")
     film = commands.add_parser("movie", help="film the membrane over the flow: mp4 (with ffmpeg) or gif")
     film.add_argument("folder", metavar="DIR", help="the run's -output_dir")
     film.add_argument("--output", metavar="FILE", help="FILE.mp4 or FILE.gif (movie.mp4 or movie.gif in DIR)")
-    film.add_argument("--field", choices=("speed", "pressure"), default="speed", help="under the membrane (speed)")
+    film.add_argument(
+        "--field", metavar="NAME", default="speed", help="under the membrane: speed, pressure, vorticity, ... (speed)"
+    )
     film.add_argument("--rate", type=float, default=15, help="pictures a second (15)")
     film.add_argument("--every", type=int, default=1, metavar="N", help="one saved time in N (1)")
     film.add_argument("--from", type=float, dest="begin", metavar="TIME", help="first time (the first saved)")
     film.add_argument("--to", type=float, dest="end", metavar="TIME", help="last time (the last saved)")
-    film.add_argument("--width", type=int, default=720, metavar="PIXELS", help="width of the film (720)")
+    film.add_argument("--width", type=int, default=1080, metavar="PIXELS", help="width of the film (1080)")
+    film.add_argument("--streamlines", action="store_true", help="streamlines too")
     _add_look(film, "cmap", "follow")
     page = commands.add_parser("report", help="write one HTML file about a run that opens anywhere, offline")
     page.add_argument("folder", metavar="DIR", help="the run's -output_dir")
@@ -90,6 +119,8 @@ def _run(command: str, words: dict[str, Any]) -> list[object]:
         look = import_module("petves.views.figures").Look
         words["look"] = look(**{name: words.pop(name) for name in own})
     if command == "plot":
+        for name in ("column", "field", "point"):
+            words[f"{name}s"] = words.pop(name)
         return module.plot_run(**words)
     if command == "compare":
         lines, picture = module.compare(**words)
@@ -126,6 +157,9 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if _for_program(given):
             return become(given)
+        given = [
+            re.sub(r"^(?=-[\d.]+[^,]*,)", " ", word) for word in given
+        ]  # -1,0 are numbers: no option begins with a blank
         words = vars(parser().parse_args(given))
         command = words.pop("command")
         if isinstance(sys.stdout, io.TextIOWrapper):

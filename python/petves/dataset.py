@@ -21,12 +21,13 @@ _HAVE = {
     "length": "gap length center_x center_y area_shift markers obstacles obstacle_center_x obstacle_center_y x y h",
     "length^2": "area",
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
-    "length^2/time": "nu flux",
-    "length^2/time^2": "p normal_stress_wall normal_stress pressure_drop",
+    "length^2/time": "nu flux stream_function",
+    "length^2/time^2": "p normal_stress_wall normal_stress pressure_drop wall_shear_stress",
     "length^3/time^2": "tension obstacle_force obstacle_force_x obstacle_force_y",
     "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact obstacle_torque",
     "length^5/time^2": "c_b",
-    "1/time": "div_max surface_div_max",
+    "1/time": "div_max surface_div_max vorticity",
+    "length/time^2": "pressure_gradient",
     "radian": "inclination obstacle_angle",
     "radian/time": "frequency",
 }
@@ -53,10 +54,14 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
     xarray.Dataset or Run
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
-        velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker; obstacles
-        (obstacle_marker, xy), where they move (time, obstacle_marker, xy), and obstacle_force (time, obstacle_marker, xy), where there are any, with the coordinate
-        obstacle. Every variable
-        has ``attrs["units"]``; above 40 vesicles each_area, each_center_x, ... (step, member) are those of vesicles.h5; the dataset's attributes are h, nu, c_b and the run's summary. Run: see there, and `unit`.
+        velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker, 1 for the first;
+        obstacles (obstacle_marker, xy), where they move (time, obstacle_marker, xy), and obstacle_force (time,
+        obstacle_marker, xy), where there are any, with the coordinate obstacle. p is without the mean gradient along x,
+        which is pressure_gradient (time): `petves.quantities.total_pressure` has both. Above 40 vesicles each_area, ...
+        (step, member) are those of vesicles.h5. Every variable has ``attrs["units"]``; the dataset's attributes are h,
+        nu, c_b, box, periodic and walls ("x", "y", "xy" or ""), folder and reason. u, v, p and each_area, ... are read from
+        their files when they are used, a frame at a time where a frame is asked for; ``.chunk(time=1)`` makes dask's
+        arrays of them. Run: see there, and `unit`.
 
     Raises
     ------
@@ -76,14 +81,20 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
 
 
 def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
+    from petves.lazy import lazy_array
+
     x, y = run.cell_centers()
-    many = {f"each_{name}": (("step", "member"), run.each(name)) for name in run.columns_of_each()}
-    fields = [np.array(values) for values in zip(*(run.fields(frame) for frame in range(len(run.time))))]
-    vesicle = np.repeat(np.arange(run.vesicles), np.diff(run.start))
-    variables = {name: ("step", values) for name, values in run.series.items() if name not in ("step", "time")}
-    variables |= {name: (("time", "y", "x"), values) for name, values in zip("uvp", fields)}
-    variables |= many
+    frames, steps = len(run.time), len(run.series["step"])
+    vesicle = np.repeat(np.arange(1, run.vesicles + 1), np.diff(run.start))
+    variables: dict[str, tuple[Any, Any]] = {
+        name: ("step", values) for name, values in run.series.items() if name not in ("step", "time")
+    }
+    for name in "uvp":
+        variables[name] = ("time", "y", "x"), lazy_array(run.folder / "run.h5", f"fluid/{name}", frames)
+    for name in run.columns_of_each():
+        variables[f"each_{name}"] = ("step", "member"), lazy_array(run.folder / "vesicles.h5", name, steps)
     variables |= {
+        "pressure_gradient": ("time", [run.pressure_gradient(frame) for frame in range(frames)]),
         "markers": (("time", "marker", "xy"), run.markers),
         "velocity": (("time", "marker", "xy"), run.velocity),
         "tension": (("time", "marker"), run.tension),
@@ -97,14 +108,18 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
         "xy": ["x", "y"],
         "vesicle": ("marker", vesicle),
     }
+    if run.columns_of_each():
+        coordinates["member"] = np.arange(1, run.vesicles + 1)
     attributes = {"h": run.h, "nu": run.nu, "c_b": run.c_b, "box": run.box, "folder": str(run.folder)}
-    attributes |= {"reason": run.summary.get("reason", "")}
+    attributes["periodic"] = "".join(name for name, period in zip("xy", run.periods) if period)
+    attributes["walls"] = run.walls
+    attributes["reason"] = run.summary.get("reason", "")
     if run.obstacles:
         moving = len(run.obstacle_markers) > 0
         places = run.obstacle_markers if moving else np.concatenate(run.obstacles)
         variables["obstacles"] = (("time", "obstacle_marker", "xy")[not moving :], places)
         variables["obstacle_force"] = (("time", "obstacle_marker", "xy"), run.obstacle_force)
         sizes = [len(points) for points in run.obstacles]
-        coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(len(sizes)), sizes))
+        coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(1, len(sizes) + 1), sizes))
     data = xarray.Dataset({k: (*v, {"units": unit(k)}) for k, v in variables.items()}, coordinates, attributes)
     return data

@@ -57,6 +57,8 @@ class Run:
         First marker of each vesicle, and the number of markers.
     viscosity_ratio : ndarray, shape (vesicles,)
         Viscosity inside over that outside.
+    bending : ndarray, shape (vesicles,)
+        Bending stiffness of each (length^5/time^2).
     obstacles : list of ndarray, each of shape (n, 2)
         Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one; the solid is on
         the left of curves that are not closed. Where they move, those of the last saved time.
@@ -86,6 +88,7 @@ class Run:
     tension: np.ndarray
     start: np.ndarray
     viscosity_ratio: np.ndarray
+    bending: np.ndarray
     obstacles: list[np.ndarray] = field(default_factory=list)
     obstacle_markers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
@@ -160,6 +163,11 @@ class Run:
             for d, c in enumerate("xy")
         )
 
+    @property
+    def walls(self) -> str:
+        """The directions that walls bound: "x", "y", "xy" or ""."""
+        return "".join(c for c in "xy" if self._in_force.get(f"domain_bc_{c}", "wall") == "wall")
+
     def images(
         self,
         frame: int,
@@ -223,6 +231,38 @@ class Run:
         place = range(len(self.time))[frame]  # a run that goes on may have more
         return read_h5(self.folder / "run.h5", lambda file: tuple(file["fluid"][name][place] for name in "uvp"))
 
+    def energies(self) -> dict[str, np.ndarray]:
+        """Return the energies that the run has at each step (length^4/time^2): bending, kinetic, gravity, contact.
+
+        Those that are zero at all steps are left out: without gravity or contact, and the kinetic one of unbounded fluid,
+        which is not computed.
+        """
+        columns = {name: self.series.get(f"energy_{name}") for name in ("bending", "kinetic", "gravity", "contact")}
+        found = {name: values for name, values in columns.items() if values is not None and values.any()}
+        return found or {"kinetic": self.series["energy_kinetic"]}
+
+    def pressure_gradient(self, frame: int) -> float:
+        """Return the mean gradient of the pressure along x (length/time^2), which is not in the p of `fields`.
+
+        From the column pressure_drop; in runs that do not have it, that of a Poiseuille flow in the background.
+        """
+        length = self.box[1] - self.box[0]
+        drop = self.at_step(frame, self.series["pressure_drop"]) if "pressure_drop" in self.series else np.nan
+        if np.isfinite(drop):
+            return -drop / length
+        options = self._in_force
+        if options.get("flow_type") != "poiseuille" or options.get("flow_form") == "total":
+            return 0.0
+        return -2 * self.nu * float(options["flow_peak_velocity"]) / float(options["flow_half_width"]) ** 2
+
+    def frame_at(self, time: float) -> int:
+        """Return the number of the saved time nearest to a time of the run."""
+        low, high = self.time[[0, -1]]
+        slack = 1e-9 * max(abs(low), abs(high))
+        if not low - slack <= time <= high + slack:
+            raise RunError(f"time {time:g}: not in the run; allowed: {low:g} to {high:g}")
+        return int(np.argmin(np.abs(self.time - time)))
+
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (nx,), and y, shape (ny,), of the cell centres."""
         return tuple(
@@ -269,8 +309,11 @@ class Run:
 
     def at(self, frame: int, column: str, vesicle: int = 0) -> float:
         """Return a vesicle's column ("velocity_x") at a saved time; NaN where series.csv has no such row yet."""
-        step = int(np.argmin(np.abs(self.series["time"] - self.time[frame])))
-        return float(self.each(column)[step, vesicle])
+        return self.at_step(frame, self.each(column)[:, vesicle])
+
+    def at_step(self, frame: int, values: np.ndarray) -> float:
+        """Return the one of values, a step each, that is of a saved time."""
+        return float(values[np.argmin(np.abs(self.series["time"] - self.time[frame]))])
 
     def phase_angle(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the phase angle of where each tension is about the centroid of the area, in (-pi, pi]."""

@@ -47,11 +47,21 @@ def read_h5(path: Path, read: Callable[[h5py.File], T]) -> T:
     """Return what `read` makes of an HDF5 file, whose data must all be in the file itself."""
 
     def inside(path: Path) -> T:
-        with h5py.File(path, "r", locking=False) as file:  # the run may be going on
+        with _open(path) as file:
             _check_own(file)
             return read(file)
 
     return read_file(path, inside, "; of a killed run, -restart makes it anew")
+
+
+def _open(path: Path) -> h5py.File:
+    """Open a file without a lock, since the run may be going on; as this process has it open already, if it has."""
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError as error:
+        if "locking flag" not in str(error):
+            raise
+        return h5py.File(path, "r")
 
 
 def _check_own(file: h5py.File) -> None:
@@ -86,6 +96,7 @@ def read_frames(file: h5py.File) -> dict[str, Any]:
         _need(values.dtype.kind == "f" and (np.abs(values) < HUGE).all(), f"{name}: not finite")
         return values
 
+    count = len(start) - 1
     return {
         "box": box,
         "h": h,
@@ -96,7 +107,8 @@ def read_frames(file: h5py.File) -> dict[str, Any]:
         "velocity": rows("vesicle/velocity", start[-1], 2),
         "tension": rows("vesicle/tension", start[-1]),
         "start": start,
-        "viscosity_ratio": np.ones(len(start) - 1) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
+        "viscosity_ratio": np.ones(count) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
+        "bending": np.ones(count) * np.ravel(file.attrs.get("vesicle_c_b", file.attrs["c_b"])),
     } | _obstacles(file, rows)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from petves.curves import smooth_curve, trigonometric
 
 KINDS = ("closed", "spanning", "open")  # as run.h5 numbers them
+FARTHEST = 6  # spacings between the last marker of an open curve and its wall
 ORDER = 6  # markers of a polynomial between the markers of an open curve
 
 
@@ -22,6 +23,17 @@ def open_curve(points: np.ndarray, fold: int) -> np.ndarray:
         weight = np.prod(((at - first)[:, None] - others) / (i - others), axis=1)
         result += weight[:, None] * points[first + i]
     return result
+
+
+def _to_wall(three: np.ndarray, axis: int, wall: float, fold: int) -> np.ndarray:
+    """Return places from the last of three points on along their parabola, to a wall or to where it is nearest to it."""
+    first, middle, last = three
+    at = np.arange(FARTHEST * fold + 1)[:, None] / fold
+    places = last + at * (3 * last - 4 * middle + first) / 2 + at**2 * (first - 2 * middle + last) / 2
+    away = (places[:, axis] - wall) * np.sign(last[axis] - wall)
+    count = np.argmax(away <= 0) if (away <= 0).any() else np.argmin(away)
+    places[count:, axis] = wall
+    return places[: max(count, 1) + 1]
 
 
 def spanning_curve(points: np.ndarray, span: np.ndarray, fold: int) -> np.ndarray:
@@ -54,9 +66,8 @@ def solid_outline(curves: list[np.ndarray], kinds: list[str], k: int, box: np.nd
         curve = open_curve(points, fold)
         ends = curve[[0, -1]]
         side = int(np.argmin([np.abs(ends[:, side // 2] - box[side]).max() for side in range(4)]))
-        feet = ends.copy()
-        feet[:, side // 2] = box[side]
-        return np.vstack([feet[:1], curve, feet[1:], feet[:1]])
+        begin, end = (_to_wall(three, side // 2, box[side], fold) for three in (points[2::-1], points[-3:]))
+        return np.vstack([begin[:0:-1], curve, end[1:], begin[-1:]])
     span = span_of(points, box)
     curve = spanning_curve(points, span, fold)
     across = int(span[0] != 0)  # the direction from one such curve to the next

@@ -81,7 +81,7 @@ def _draw(runs: tuple[Run, Run], path: Path) -> Path:
     for run, color, style in zip(runs, ("C0", "C1"), ("-", "--")):
         label = shown(run.folder)
         time = run.series["time"]
-        axes[0].plot(time, run.series["energy_kinetic"] + run.series["energy_bending"], style, color=color, label=label)
+        axes[0].plot(time, sum(run.energies().values()), style, color=color, label=label)
         axes[1].plot(time, np.unwrap(run.series["inclination"], period=np.pi), style, color=color, label=label)
         draw_outlines(axes[2], run, -1, color, style)
     dress(axes[0], 10, xlabel="time $t$", ylabel="energy (length$^4$/time$^2$)")

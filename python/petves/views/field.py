@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable
+from typing import TYPE_CHECKING, Callable, Sequence
 
 import numpy as np
 
 from petves.run import Run
-from petves.views.figures import MANY, PLAIN, Look, Sheet, new_sheet, save_figure
+from petves.views.figures import MANY, PLAIN, Look, Sheet, add_bar, new_sheet, save_figure
 from petves.views.window import Window
 
 if TYPE_CHECKING:
@@ -21,13 +21,14 @@ STREAMS = 1.1  # density of streamlines
 OVER_FIELD, OVER_STREAMS = 1.2, 1.5  # matplotlib's order: streamlines, solids; membranes at its 2
 SOLID = "#9a9a9a"  # colour of obstacles
 CROWD = 200  # vesicles from which outlines are thin
+KINDS = 10  # of vesicles that have a colour each
 
 
 @dataclass
 class FieldKind:
-    """How a field is drawn: its values from u, v, p, its colours, and the colour of what lies on it."""
+    """How a field is drawn: its values in a window, its colours, and the colour of what lies on it."""
 
-    values: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    values: Callable[[Window], np.ndarray]
     label: str
     cmap: str
     line: str
@@ -35,16 +36,28 @@ class FieldKind:
 
 
 FIELDS = {
-    "pressure": FieldKind(lambda u, v, p: p, "pressure $p$ (length$^2$/time$^2$)", "RdBu_r", "black", True),
+    "pressure": FieldKind(lambda w: w.fields()[2], "pressure $p$ (length$^2$/time$^2$)", "RdBu_r", "black", True),
+    "pressure_deviation": FieldKind(
+        lambda w: w.fields()[2] - w.mean_pressure(),
+        "$p$ less mean gradient (length$^2$/time$^2$)",
+        "RdBu_r",
+        "black",
+        True,
+    ),
     "speed": FieldKind(
-        lambda u, v, p: np.hypot(u, v), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
+        lambda w: np.hypot(*w.fields()[:2]), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
+    ),
+    "vorticity": FieldKind(Window.vorticity, r"vorticity $\omega$ (1/time)", "PuOr_r", "black", True),
+    "stream_function": FieldKind(
+        Window.stream_function, r"stream function $\psi$ (length$^2$/time)", "PRGn", "black", True
     ),
 }
+TENSION = r"tension $\sigma$ (length$^3$/time$^2$)"
 
 
 def draw_field(axes: Axes, kind: FieldKind, window: Window, look: Look, high: float | None = None) -> AxesImage:
     """Draw a field of the window's time smoothly; its colours reach to `high`, its largest value when left out."""
-    values = kind.values(*window.fields())
+    values = kind.values(window)
     high = high or np.max(np.abs(values)) or 1.0
     low, cmap = (-high, kind.cmap) if kind.signed else (0.0, look.cmap or kind.cmap)
     places = dict(extent=window.extent, origin="lower", aspect="equal", interpolation="bilinear")
@@ -58,34 +71,37 @@ def draw_field(axes: Axes, kind: FieldKind, window: Window, look: Look, high: fl
 def draw_membranes(
     axes: Axes, run: Run, frame: int, limits: tuple[float, float], color: str, follow: int | None = None
 ) -> list[Artist]:
-    """Draw the smooth outlines coloured by tension over a wider line of one colour, the first outline dotted.
+    """Draw the outlines coloured by tension over a wider line of one colour, of up to MANY vesicles smooth, the first one dotted.
 
-    More than MANY vesicles are areas instead, each of a colour that it keeps. Obstacles are areas in grey. Images across a
-    periodic seam are there too.
+    Obstacles are areas in grey. Images across a periodic seam are there too.
 
     Returns
     -------
     list of Artist
-        What was drawn; of few vesicles the last one is what a colour bar of the tension needs.
+        What was drawn; with vesicles the last one is what a colour bar of the tension needs.
     """
     from matplotlib.collections import LineCollection
 
-    drawn: list[Artist] = []
-    window = Window(run, frame, follow)
-    drawn += draw_solids(axes, window)
-    if run.vesicles > MANY:
-        return [*drawn, draw_members(axes, run, frame, follow)]
-    first = Window(run, 0, follow)
+    window, first = Window(run, frame, follow), Window(run, 0, follow)
+    drawn: list[Artist] = draw_solids(axes, window)
+    few, smooth = run.vesicles <= MANY, run.vesicles < CROWD
+    wide = 4.0 if few else 2.0 if smooth else 1.0
+    below, segments, tensions = [], [], []
     for vesicle in range(run.vesicles):
-        for initial in first.images(vesicle):
-            drawn += axes.plot(*initial.T, ":", color=color, lw=1)
-        tension = run.curve_tension(frame, vesicle)
-        for points in window.images(vesicle):
-            drawn += axes.plot(*points.T, "-", color=color, lw=4, solid_joinstyle="round")
-            lines = LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap="plasma", lw=2.4, capstyle="round")
-            lines.set_array(tension)
-            lines.set_clim(*limits)
-            drawn.append(axes.add_collection(lines))
+        if few:
+            for initial in first.images(vesicle):
+                drawn += axes.plot(*initial.T, ":", color=color, lw=1)
+        for points in window.images(vesicle, curve=smooth):
+            below.append(points)
+            segments.append(np.stack([points[:-1], points[1:]], axis=1))
+            tensions.append(run.curve_tension(frame, vesicle) if smooth else run.edge_tension(frame, vesicle))
+    if run.vesicles:
+        style = dict(zorder=OVER_FIELD + 0.8, rasterized=not smooth)
+        drawn.append(axes.add_collection(LineCollection(below, colors=color, lw=wide, joinstyle="round", **style)))
+        lines = LineCollection(np.concatenate(segments), cmap="plasma", lw=0.6 * wide, capstyle="round", **style)
+        lines.set_array(np.concatenate(tensions))
+        lines.set_clim(*limits)
+        drawn.append(axes.add_collection(lines))
     return drawn
 
 
@@ -102,14 +118,33 @@ def draw_solids(axes: Axes, window: Window) -> list[Artist]:
     return [axes.add_patch(PathPatch(path, facecolor=SOLID, edgecolor="black", lw=0.8, zorder=OVER_STREAMS))]
 
 
+def kinds_of(run: Run) -> tuple[np.ndarray, list[str]]:
+    """Return the number of each vesicle's kind, and the name of each kind; one kind without a name when they are many.
+
+    Vesicles of a kind have one area, reduced area, bending stiffness and viscosity ratio, to a hundredth.
+    """
+    area, length = (run.each(name)[0] for name in ("area", "length"))
+    names = {
+        "$A$": area,
+        "$V$": 4 * np.pi * area / length**2,
+        "$c_b$": run.bending,
+        r"$\lambda$": run.viscosity_ratio,
+    }
+    table = np.array([[f"{value:.2g}" for value in values] for values in names.values()])
+    kinds, members = np.unique(table, axis=1, return_inverse=True)
+    if kinds.shape[1] > KINDS or kinds.shape[1] == 1:
+        return np.zeros(run.vesicles, int), [""]
+    differ = [k for k in range(len(names)) if len(set(kinds[k])) > 1]
+    return members, [", ".join(f"{list(names)[k]} = {kind[k]}" for k in differ) for kind in kinds.T]
+
+
 def draw_members(axes: Axes, run: Run, frame: int, follow: int | None = None) -> Artist:
-    """Draw many vesicles as areas, images across a periodic seam included; vesicle v has colour v of a cycle of 20."""
-    import matplotlib
+    """Draw many vesicles as areas in the colours of their kinds, images across a periodic seam included."""
     from matplotlib.collections import PolyCollection
 
-    window = Window(run, frame, follow)
+    window, (members, _) = Window(run, frame, follow), kinds_of(run)
     outlines = [(v, points) for v in range(run.vesicles) for points in window.images(v, curve=run.vesicles < CROWD)]
-    colors = matplotlib.colormaps["tab20"]([v % 20 for v, _ in outlines])
+    colors = [f"C{members[v]}" for v, _ in outlines]
     width = 0.8 if run.vesicles < CROWD else 0.4
     return axes.add_collection(
         PolyCollection([points for _, points in outlines], facecolors=colors, edgecolors="black", lw=width)
@@ -122,34 +157,42 @@ def box_sheet(window: Window, look: Look, panels: int, bars: bool = True, last: 
     return new_sheet(x1 - x0, y1 - y0, panels, bars, last, look)
 
 
-def plot_field(run: Run, frame: int = -1, look: Look = PLAIN) -> Path:
-    """Draw the membranes, coloured by tension, over pressure and over speed with streamlines, at a saved time.
+def plot_field(
+    run: Run,
+    frame: int = -1,
+    look: Look = PLAIN,
+    fields: Sequence[str] = ("pressure", "speed"),
+    name: str = "field.png",
+) -> Path:
+    """Draw the membranes, coloured by tension, over fields at a saved time, the speed with streamlines.
 
     The dotted outline is the initial one.
     """
     window = Window(run, frame, look.follow)
-    few = 0 < run.vesicles <= MANY
-    sheet = box_sheet(window, look, panels=2, last=few)
+    sheet = box_sheet(window, look, panels=len(fields), last=run.vesicles > 0)
     limits = (run.tension[frame].min(), run.tension[frame].max()) if run.vesicles else (0.0, 1.0)
     drawn: list[Artist] = []
-    for panel, bar, kind in zip(sheet.panels, sheet.bars, FIELDS.values()):
+    for panel, bar, field in zip(sheet.panels, sheet.bars, fields):
+        kind = FIELDS[field]
         image = draw_field(panel, kind, window, look)
-        frame_of = ", in the frame of the vesicle" if window.moving and not kind.signed else ""
-        sheet.figure.colorbar(image, cax=bar, label=kind.label + frame_of, orientation="horizontal")
+        frame_of = ", in the frame of the vesicle" if window.moving and field in ("speed", "stream_function") else ""
+        add_bar(bar, image, kind.label + frame_of)
         drawn = draw_membranes(panel, run, frame, limits, kind.line, look.follow)
-    _draw_streamlines(sheet.panels[1], window)
-    if few:
-        label = r"tension $\sigma$ (length$^3$/time$^2$)"
-        sheet.figure.colorbar(drawn[-1], cax=sheet.last, label=label, orientation="horizontal")
+        if field == "speed":
+            draw_streamlines(panel, window)
+    if sheet.last is not None:
+        add_bar(sheet.last, drawn[-1], TENSION)
     sheet.panels[0].set_title(f"$t$ = {run.time[frame]:g}", loc="left", fontsize=10)
-    return save_figure(sheet.figure, run.folder / "field.png", look)
+    return save_figure(sheet.figure, run.folder / name, look)
 
 
-def _draw_streamlines(axes: Axes, window: Window) -> None:
+def draw_streamlines(axes: Axes, window: Window) -> None:
+    """Draw streamlines of the window's velocity."""
     u, v, _ = window.fields()
     if np.hypot(u, v).max() > 0:
         sides = window.limits[1::2] - window.limits[::2]
-        density = STREAMS * np.clip(2 * sides / sides.max(), 0.4, 1.0)
+        inches = axes.get_window_extent().width / axes.figure.dpi
+        density = STREAMS * np.clip(2 * sides / sides.max(), 0.4, 1.0) * min(1.0, inches / 4)
         style = dict(color="white", linewidth=0.6, arrowsize=0.7, density=tuple(density), zorder=OVER_FIELD)
         axes.streamplot(*window.cell_centers(), u, v, **style).lines.set_alpha(0.7)
         axes.set(xlim=window.limits[:2], ylim=window.limits[2:])

@@ -13,11 +13,13 @@ from petves.files import writing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 FORMATS = ("png", "pdf", "svg")
-MANY = 8  # vesicles above which each has a colour and none a name
+MANY = 8  # vesicles above which none has a name
 LEGEND = 10  # size of its letters
+FONTS = {"pdf.fonttype": 42, "svg.fonttype": "none"}  # letters as letters, which journals ask for
 
 
 @dataclass(frozen=True)
@@ -63,12 +65,17 @@ PLAIN = Look()
 
 
 def new_figure(
-    width: float, height: float, columns: int = 1, rows: int = 1, equal: bool = False
+    width: float, height: float, columns: int = 1, rows: int = 1, equal: bool = False, look: Look = PLAIN
 ) -> tuple[Figure, np.ndarray]:
-    """Return a figure that needs no display, and its axes, row by row; equal: of equal scales in x and y."""
+    """Return a figure that needs no display, and its axes, row by row; equal: of equal scales in x and y.
+
+    A look's width stands in place of `width`; the height goes with it as far as letters have room.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    if look.width is not None:
+        width, height = look.width, max(height * look.width / width, 1.0 + 1.7 * rows)
     figure = Figure(figsize=(width, height), layout="compressed" if equal else "constrained")
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, squeeze=False).ravel()
@@ -78,6 +85,7 @@ LEFT, RIGHT, BELOW, ABOVE = 0.8, 0.3, 0.6, 0.4  # what stands around a panel, in
 BAR, UNDER_BAR = 0.14, 0.56  # a colour bar, and its numbers and name
 WIDE = 1.6  # a box wider than this, over its height, has its panels one above the other
 NARROW = 3.2  # width of a colour bar where its panel is narrower, for its name
+TICK = 0.62  # inches that a number takes below a colour bar
 LEAST = 2.0  # width that a panel has at least beside another one
 
 
@@ -127,13 +135,22 @@ def new_sheet(
     return sheet
 
 
+def add_bar(place: Axes, mappable: ScalarMappable, label: str) -> None:
+    """Draw a colour bar with as many numbers as its width takes."""
+    from matplotlib.ticker import MaxNLocator
+
+    inches = place.get_window_extent().width / place.figure.dpi
+    ticks = MaxNLocator(max(2, int(inches / TICK)), min_n_ticks=2)
+    place.figure.colorbar(mappable, cax=place, label=label, ticks=ticks, orientation="horizontal")
+
+
 def save_figure(figure: Figure, path: Path, look: Look = PLAIN) -> Path:
-    """Write a picture in the look's format and width; return its path."""
+    """Write a picture in the look's format; return its path."""
+    import matplotlib
+
     path = path.with_suffix(f".{look.format}")
-    if look.width is not None and figure.get_layout_engine() is not None:  # sheets have it already
-        figure.set_size_inches(look.width, look.width * figure.get_figheight() / figure.get_figwidth())
     dates = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}  # the same run, the same file
-    with writing(path) as fresh:
+    with writing(path) as fresh, matplotlib.rc_context(FONTS):
         figure.savefig(fresh, dpi=look.dpi, metadata=dates[look.format])
     return path
 
@@ -147,13 +164,9 @@ def dress(axes: Axes, legend: float = 0, grid: str = "major", **names: Any) -> N
 
 
 def legend_above(axes: Axes, columns: int = 3) -> None:
-    """Draw the legend over the axes, where there are no data."""
-    axes.legend(
-        frameon=False,
-        fontsize=LEGEND,
-        loc="lower left",
-        bbox_to_anchor=(-0.02, 1.0),
-        ncols=columns,
-        borderaxespad=0.1,
-        columnspacing=1.2,
-    )
+    """Draw the legend over the axes, where there are no data, in at most so many columns: as many as the width takes."""
+    place = dict(loc="lower left", bbox_to_anchor=(-0.02, 1.0), borderaxespad=0.1, columnspacing=1.2)
+    for count in range(columns, 0, -1):
+        legend = axes.legend(frameon=False, fontsize=LEGEND, ncols=count, **place)
+        if legend.get_window_extent().width <= axes.figure.bbox.width - LEFT * axes.figure.dpi:
+            return

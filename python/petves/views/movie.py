@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,11 @@ import numpy as np
 from petves.files import writing
 from petves.progress import progress_bar
 from petves.run import Run, RunError
-from petves.views.field import FIELDS, draw_field, draw_membranes
-from petves.views.figures import PLAIN, Look, new_figure
+from petves.views.field import FIELDS, TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines
+from petves.views.figures import PLAIN, Look, add_bar
 from petves.views.window import Window
 
+DOTS = 150  # an inch
 SUFFIXES = (".mp4", ".gif")
 
 
@@ -22,10 +24,11 @@ def movie(
     output: str | Path | None = None,
     field: str = "speed",
     rate: float = 15,
-    width: int = 720,
+    width: int = 1080,
     every: int = 1,
     begin: float | None = None,
     end: float | None = None,
+    streamlines: bool = False,
     look: Look = PLAIN,
 ) -> Path:
     """Film a run: a picture a saved time. A bar shows how far it has come, where standard error is a terminal.
@@ -37,7 +40,7 @@ def movie(
     output : str or Path, optional
         File to write, .mp4 (needs ffmpeg) or .gif; movie.mp4 in the folder, or movie.gif without ffmpeg.
     field : str
-        What is under the membrane: "speed" or "pressure".
+        What is under the membrane: speed, pressure, pressure_deviation, vorticity or stream_function.
     rate : float
         Pictures a second.
     width : int
@@ -46,6 +49,8 @@ def movie(
         Take one saved time in so many.
     begin, end : float, optional
         First and last time; all saved times when left out.
+    streamlines : bool
+        Draw streamlines too; a film then takes several times as long.
     look : Look
         Colour map, and whether the picture goes along with a vesicle; a film has its own format and size.
 
@@ -69,7 +74,7 @@ def movie(
     if field not in FIELDS:
         raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
     with writing(path) as fresh:
-        _film(run, chosen_frames(run, every, begin, end), fresh, field, rate, width, look)
+        _film(run, chosen_frames(run, every, begin, end), fresh, field, rate, width, streamlines, look)
     return path
 
 
@@ -87,30 +92,35 @@ def chosen_frames(run: Run, every: int, begin: float | None, end: float | None) 
     return frames
 
 
-def _film(run: Run, frames: np.ndarray, path: Path, field: str, rate: float, width: int, look: Look) -> None:
+def _film(
+    run: Run, frames: np.ndarray, path: Path, field: str, rate: float, width: int, streamlines: bool, look: Look
+) -> None:
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     kind = FIELDS[field]
     windows = [Window(run, frame, look.follow) for frame in frames]
-    highest = max(float(np.max(np.abs(kind.values(*window.fields())))) for window in windows) or 1.0
-    sides = run.box[1] - run.box[0], run.box[3] - run.box[2]
-    inches = width / 100
-    height = 2 * round(50 * np.clip((inches - 1.6) * sides[1] / sides[0] + 0.9, 2.0, 1.5 * inches)) / 100  # even pixels
-    figure, (axes,) = new_figure(inches, height)
-    image = draw_field(axes, kind, windows[0], look, highest)
-    figure.colorbar(image, ax=axes, label=kind.label, shrink=0.85)
-    limits = (run.tension.min(), run.tension.max()) if run.vesicles else (0.0, 1.0)
+    highest = max(float(np.max(np.abs(kind.values(window)))) for window in windows) or 1.0
+    limits = (run.tension[frames].min(), run.tension[frames].max()) if run.vesicles else (0.0, 1.0)
+    sheet = box_sheet(windows[0], replace(look, width=width / DOTS), panels=1, last=run.vesicles > 0)
+    (panel,), figure = sheet.panels, sheet.figure
+    figure.set_size_inches(
+        2 * np.round(figure.get_size_inches() * DOTS / 2) / DOTS
+    )  # films have even numbers of pixels
     if path.suffix == ".mp4":
         writer = FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
     else:
         writer = PillowWriter(fps=rate)
-    with writer.saving(figure, str(path), 100), progress_bar(len(frames), unit="frames") as bar:
+    with writer.saving(figure, str(path), DOTS), progress_bar(len(frames), unit="frames") as bar:
         for done, window in enumerate(windows):
-            image.set(data=kind.values(*window.fields()), extent=window.extent)
-            axes.set(xlim=window.limits[:2], ylim=window.limits[2:])
-            drawn = draw_membranes(axes, run, window.frame, limits, kind.line, look.follow)
-            axes.set_title(f"$t$ = {run.time[window.frame]:.4g}")
+            panel.clear()
+            image = draw_field(panel, kind, window, look, highest)
+            drawn = draw_membranes(panel, run, window.frame, limits, kind.line, look.follow)
+            if streamlines:
+                draw_streamlines(panel, window)
+            if not done:
+                add_bar(sheet.bars[0], image, kind.label)
+                if sheet.last is not None:
+                    add_bar(sheet.last, drawn[-1], TENSION)
+            panel.set_title(f"$t$ = {run.time[window.frame]:.4g}", fontsize=10)
             writer.grab_frame()
-            for artist in drawn:
-                artist.remove()
             bar(done + 1)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Sequence
 
 import numpy as np
 
-from petves.run import Run
-from petves.views.field import OVER_STREAMS, box_sheet, draw_members, draw_solids, plot_field
-from petves.views.figures import MANY, PLAIN, Look, Sheet, dress, legend_above, new_figure, new_sheet, save_figure
+from petves.run import Run, RunError
+from petves.views.curves import plot_columns, plot_line, plot_points, plot_walls
+from petves.views.field import FIELDS, OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
+from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look, Sheet
+from petves.views.figures import dress, legend_above, new_figure, new_sheet, save_figure
 from petves.views.window import Window
 
 if TYPE_CHECKING:
@@ -23,8 +25,17 @@ LAST = 0.1  # part of the run that says whether it is steady,
 STEADY = 0.002  # and by how much of itself a steady value changes in it at most
 
 
-def plot_run(folder: str | Path, look: Look = PLAIN) -> list[Path]:
-    """Draw every picture that a run's files allow.
+def plot_run(
+    folder: str | Path,
+    look: Look = PLAIN,
+    time: float | None = None,
+    columns: Sequence[str] = (),
+    fields: Sequence[str] = (),
+    points: Sequence[Sequence[float]] = (),
+    line: Sequence[float] | None = None,
+    walls: bool = False,
+) -> list[Path]:
+    """Draw every picture that a run's files allow, or those that are asked for.
 
     Parameters
     ----------
@@ -32,11 +43,25 @@ def plot_run(folder: str | Path, look: Look = PLAIN) -> list[Path]:
         The run's ``-output_dir``; the pictures go there too.
     look : Look
         Format, size, colours, and whether fields and outlines go along with a vesicle.
+    time : float, optional
+        Draw what is of one time, field and tension or what is asked for below, at the saved time nearest to it.
+    columns : sequence of str
+        Draw these columns of series.csv over time.
+    fields : sequence of str
+        Draw the membranes over these fields: pressure, speed, vorticity, stream_function.
+    points : sequence of (x, y)
+        Draw velocity and pressure at these points over time.
+    line : (x, y, x, y), optional
+        Draw velocity and pressure along a line.
+    walls : bool
+        Draw the shear stress along the walls.
 
     Returns
     -------
     list of Path
-        The files written: energy, field, and with vesicles conservation, motion, tension, shapes.
+        The files written. All: energy, field, with vesicles conservation, motion, tension, shapes, and series where the run
+        has a gap, a pressure drop, torques or a viscosity. Asked for: series, field, points, line, walls; with `time`
+        pictures of one time have what was asked for in their names, as in field_t1.5.png.
 
     Raises
     ------
@@ -44,27 +69,45 @@ def plot_run(folder: str | Path, look: Look = PLAIN) -> list[Path]:
         When the run cannot be read, or not be drawn this way.
     """
     run = Run.read(folder)
+    for field in fields:
+        if field not in FIELDS:
+            raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
+    frame = -1 if time is None else run.frame_at(time)
+    tail = ".png" if time is None else f"_t{time:g}.png"
+    drawn = plot_columns(run, columns, look) if columns else []
+    if len(points):
+        drawn.append(plot_points(run, points, look))
+    if line is not None:
+        drawn.append(plot_line(run, line, frame, look, f"line{tail}"))
+    if walls:
+        drawn.append(plot_walls(run, frame, look, f"walls{tail}"))
+    if fields or (time is not None and not drawn):
+        drawn.append(plot_field(run, frame, look, fields or ("pressure", "speed"), f"field{tail}"))
+        if run.vesicles and not fields:
+            drawn.append(plot_tension(run, frame, look, f"tension{tail}"))
+    if drawn:
+        return drawn
     drawn = [plot_energy(run, look), plot_field(run, look=look)]
     if run.vesicles:
         drawn += [plot(run, look=look) for plot in (plot_conservation, plot_motion, plot_tension, plot_shapes)]
-    return drawn
+    return drawn + plot_columns(run, look=look)
 
 
 def plot_energy(run: Run, look: Look = PLAIN) -> Path:
-    """Draw kinetic, bending and total energy over the initial total energy (or over the largest, if that is 0)."""
-    figure, (axes,) = new_figure(6, 4)
-    time = run.series["time"]
-    kinetic, bending = run.series["energy_kinetic"], run.series["energy_bending"]
-    total = kinetic + bending
+    """Draw the energies of a run and their sum over the initial sum (or over the largest, if that is not positive)."""
+    figure, (axes,) = new_figure(6, 4, look=look)
+    time, parts = run.series["time"], run.energies()
+    total = sum(parts.values())
     scale, name = total[0], "E_0"
     if scale <= 0:
-        scale, name = np.max(total), r"E_{\max}"
+        scale, name = np.max(np.abs(total)), r"E_{\max}"
     if scale <= 0:
         scale, name = 1.0, "1"
-    axes.plot(time, total / scale, "k-", lw=2, label="total $E$")
-    if run.vesicles and run.c_b > 0:
-        axes.plot(time, bending / scale, "--", color="C0", label="bending $E_B$")
-    axes.plot(time, kinetic / scale, "-.", color="C1", label="kinetic $E_K$")
+    if len(parts) > 1:
+        axes.plot(time, total / scale, "k-", lw=2, label="total $E$")
+    styles = {"bending": "--C0", "kinetic": "-.C1", "gravity": ":C2", "contact": ":C3"}
+    for part, values in parts.items():
+        axes.plot(time, values / scale, styles[part], label=f"{part} $E_{part[0].upper()}$")
     dress(axes, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
     legend_above(axes)
     return save_figure(figure, run.folder / "energy.png", look)
@@ -72,7 +115,7 @@ def plot_energy(run: Run, look: Look = PLAIN) -> Path:
 
 def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
     """Draw the relative errors of area and length against time, on a logarithmic axis."""
-    figure, (axes,) = new_figure(6, 4)
+    figure, (axes,) = new_figure(6, 4, look=look)
     time = run.series["time"][1:]
     for column, style, label in (
         ("area_error", "-", "area, $|A - A_0|/A_0$"),
@@ -84,42 +127,56 @@ def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
     return save_figure(figure, run.folder / "conservation.png", look)
 
 
-def steady_value(time: np.ndarray, values: np.ndarray) -> float | None:
-    """Return the last value when the last tenth of the run changes by less than STEADY of it, else None."""
+def is_steady(time: np.ndarray, values: np.ndarray, scale: float | None = None) -> bool:
+    """Return whether the last tenth of the run changes by less than STEADY of the scale, the last value when left out."""
     last = values[time >= time[-1] - LAST * (time[-1] - time[0])]
     if len(last) < 3 or not np.isfinite(last).all():
-        return None
-    return float(last[-1]) if np.ptp(last) <= STEADY * abs(last[-1]) else None
+        return False
+    return bool(np.ptp(last) <= STEADY * abs(last[-1] if scale is None else scale))
 
 
-def _draw_course(axes: Axes, time: np.ndarray, values: np.ndarray, color: str, label: str | None) -> None:
-    """Draw a quantity against time, with its steady value, where it has one, as a dotted line and a number."""
+def _is_at_rest(run: Run, vesicle: int) -> bool:
+    """Return whether a vesicle's inclination, turning rate and velocity are steady together."""
+    time, fastest = run.series["time"], np.abs(run.velocity[-1]).max()
+    own = {name: run.each(name)[:, vesicle] for name in ("inclination", "frequency", "velocity_x", "velocity_y")}
+    turning = np.isfinite(own["frequency"][-1])
+    return all(is_steady(time, own[f"velocity_{c}"], fastest) for c in "xy") and all(
+        is_steady(time, own[name]) for name in ("inclination", "frequency")[: 1 + turning]
+    )
+
+
+def _draw_course(
+    axes: Axes, time: np.ndarray, values: np.ndarray, color: str, label: str | None, at_rest: bool
+) -> None:
+    """Draw a quantity against time, at rest with its last value as a dotted line and a number."""
     axes.plot(time, values, color=color, label=label)
-    steady = steady_value(time, values)
-    if steady is not None:
+    if at_rest and np.isfinite(values[-1]):
+        steady = values[-1]
         axes.axhline(steady, color=color, ls=":", lw=1)
         place = dict(xytext=(4, 0), textcoords="offset points", va="center", fontsize=9, annotation_clip=False)
         axes.annotate(f"{steady:.4g}", (1.0, steady), xycoords=("axes fraction", "data"), color=color, **place)
 
 
 def plot_motion(run: Run, look: Look = PLAIN) -> Path:
-    """Draw the inclination and the tank-treading frequency against time; a steady value is marked."""
+    """Draw the inclination, without jumps by pi, and the tank-treading frequency against time; steady values are marked."""
     if run.vesicles > MANY:
         return _plot_motion_of_many(run, look)
     time = run.series["time"]
     angles = np.unwrap(run.each("inclination"), period=np.pi, axis=0) / np.pi
+    angles -= np.round(angles[-1] - run.each("inclination")[-1] / np.pi)  # the last one is that of series.csv
     frequencies = run.each("frequency")
     turning = bool(np.isfinite(frequencies).any())
-    figure, axes = new_figure(6, 4, rows=2 if turning else 1)
+    figure, axes = new_figure(6, 4, rows=2 if turning else 1, look=look)
     for vesicle in range(run.vesicles):
         label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
-        _draw_course(axes[0], time, angles[:, vesicle], f"C{vesicle}", label)
+        at_rest = _is_at_rest(run, vesicle)
+        _draw_course(axes[0], time, angles[:, vesicle], f"C{vesicle}", label, at_rest)
         if turning:
-            _draw_course(axes[1], time, frequencies[:, vesicle], f"C{vesicle}", None)
+            _draw_course(axes[1], time, frequencies[:, vesicle], f"C{vesicle}", None, at_rest)
     middle, half = np.mean(axes[0].get_ylim()), max(np.ptp(axes[0].get_ylim()) / 2, LEAST_SPAN / 2)
     dress(axes[0], ylabel=r"inclination $\theta/\pi$", ylim=(middle - half, middle + half))
     if turning:
-        dress(axes[1], ylabel="frequency (radians/time)", xlim=axes[0].get_xlim())
+        dress(axes[1], ylabel="frequency\n(radians/time)", xlim=axes[0].get_xlim())
     axes[-1].set_xlabel("time $t$")
     if run.vesicles > 1:
         legend_above(axes[0], columns=4)
@@ -128,7 +185,7 @@ def plot_motion(run: Run, look: Look = PLAIN) -> Path:
 
 def _plot_motion_of_many(run: Run, look: Look) -> Path:
     """Draw how vesicles lie: the mean axis of all (of twice the angle), and how well they agree with it."""
-    figure, (axes,) = new_figure(6, 4)
+    figure, (axes,) = new_figure(6, 4, look=look)
     turned = np.mean(np.exp(2j * run.each("inclination")), axis=1)
     time, axis = run.series["time"], np.unwrap(np.angle(turned) / 2, period=np.pi) / np.pi
     axes.plot(time, axis, "C0-", label=rf"mean axis $\theta/\pi$ of {run.vesicles} vesicles")
@@ -138,9 +195,9 @@ def _plot_motion_of_many(run: Run, look: Look) -> Path:
     return save_figure(figure, run.folder / "motion.png", look)
 
 
-def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN) -> Path:
+def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "tension.png") -> Path:
     """Draw the tension against the phase angle about the centroid, at a saved time; many vesicles in one colour."""
-    figure, (axes,) = new_figure(6, 4)
+    figure, (axes,) = new_figure(6, 4, look=look)
     few = run.vesicles <= MANY
     for vesicle in range(run.vesicles):
         angle = run.phase_angle(frame, vesicle) / np.pi
@@ -148,12 +205,10 @@ def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN) -> Path:
         label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
         style = dict(ms=4, lw=1, label=label) if few else dict(ms=0, lw=0.5, color="black", alpha=0.3)
         axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", **style)
-    names = dict(xlabel=r"phase angle $\varphi/\pi$", ylabel=r"tension $\sigma$ (length$^3$/time$^2$)", xlim=(-1, 1))
-    dress(axes, **names)
-    axes.set_title(f"$t$ = {run.time[frame]:g}", loc="right", fontsize=10)
+    dress(axes, xlabel=rf"phase angle $\varphi/\pi$ at $t$ = {run.time[frame]:.4g}", ylabel=TENSION, xlim=(-1, 1))
     if few and run.vesicles > 1:
         legend_above(axes, columns=4)
-    return save_figure(figure, run.folder / "tension.png", look)
+    return save_figure(figure, run.folder / name, look)
 
 
 def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, follow: int | None = None) -> None:
@@ -205,9 +260,10 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     scale = ScalarMappable(
         BoundaryNorm(np.arange(len(frames) + 1), len(frames)), matplotlib.colors.ListedColormap(colors)
     )
-    ticks = np.arange(len(frames)) + 0.5
+    each = -(-len(frames) // max(1, int(sheet.bars[0].get_window_extent().width / sheet.figure.dpi / TICK)))
+    ticks = np.arange(len(frames))[::-each][::-1] + 0.5
     bar = sheet.figure.colorbar(scale, cax=sheet.bars[0], label="time $t$", ticks=ticks, orientation="horizontal")
-    bar.set_ticklabels([f"{run.time[frame]:.4g}" for frame in frames])
+    bar.set_ticklabels([f"{run.time[frame]:.4g}" for frame in frames[::-each][::-1]])
     return save_figure(sheet.figure, run.folder / "shapes.png", look)
 
 
@@ -224,8 +280,14 @@ def _sheet_of_shapes(run: Run, frames: np.ndarray, whole: bool, look: Look) -> t
 
 
 def _plot_first_and_last(run: Run, look: Look) -> Path:
-    """Draw many vesicles in the box at the first and the last saved time."""
-    sheet = box_sheet(Window(run, 0), look, panels=2, bars=False)
+    """Draw many vesicles in the box at the first and the last saved time, kinds in colours that a legend below names."""
+    _, kinds = kinds_of(run)
+    sheet = box_sheet(Window(run, 0), look, panels=2, bars=False, last=len(kinds) > 1)
+    if sheet.last is not None:
+        sheet.last.set_axis_off()
+        patches = [sheet.last.fill(np.nan, np.nan, f"C{k}", ec="black", label=kind)[0] for k, kind in enumerate(kinds)]
+        columns = max(1, int(sheet.figure.get_figwidth() / 1.7))
+        sheet.last.legend(handles=patches, loc="center", ncols=columns, frameon=False, fontsize=LEGEND)
     for panel, frame in zip(sheet.panels, (0, -1)):
         draw_members(panel, run, frame, look.follow)
         draw_solids(panel, Window(run, frame, look.follow))

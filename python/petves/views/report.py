@@ -106,7 +106,7 @@ def _data(run: Run) -> dict[str, Any]:
     """Return what the page draws: outlines, tension and fields of at most FRAMES saved times."""
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(FRAMES, len(run.time))).round().astype(int))
     digits = 5 - int(np.floor(np.log10(run.box[1] - run.box[0])))
-    raw = [run.fields(frame) for frame in frames]
+    raw = [Window(run, frame).fields() for frame in frames]
     speed = np.stack([coarsen(np.hypot(u, v)) for u, v, _ in raw])
     pressure = np.stack([coarsen(p) for _, _, p in raw])
     tension = run.tension[frames]

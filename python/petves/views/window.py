@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from petves.quantities import stream_function_of, vorticity_of
 from petves.run import Run, RunError
 
 
@@ -65,15 +66,29 @@ class Window:
         return field
 
     def fields(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return u, v, p on the cells of `extent`, each of shape (ny, nx)."""
+        """Return u, v and the total pressure, zero in the middle, on the cells of `extent`, each of shape (ny, nx)."""
         u, v, p = (self._seen(field) for field in self.run.fields(self.frame))
-        return u - self.velocity[0], v - self.velocity[1], p
+        return u - self.velocity[0], v - self.velocity[1], p + self.mean_pressure()
+
+    def mean_pressure(self) -> np.ndarray:
+        """Return what the mean gradient adds to the pressure, shape (nx,)."""
+        return self.run.pressure_gradient(self.frame) * (self.cell_centers()[0] - np.mean(self.limits[:2]))
+
+    def vorticity(self) -> np.ndarray:
+        """Return the vorticity on the cells of `extent`, shape (ny, nx)."""
+        u, v, _ = self.run.fields(self.frame)
+        return self._seen(vorticity_of(u, v, self.run.h, [period > 0 for period in self.run.periods]))
+
+    def stream_function(self) -> np.ndarray:
+        """Return the stream function of the velocity of `fields`, as far above zero as below it, shape (ny, nx)."""
+        values = stream_function_of(*self.fields()[:2], self.run.h)
+        return values - 0.5 * (values.min() + values.max())
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (nx,), and y, shape (ny,), of the cells of `fields`."""
-        u = self.fields()[0]
         extent, h = self.extent, self.run.h
-        return tuple(extent[2 * d] + h * (0.5 + np.arange(u.shape[1 - d])) for d in range(2))
+        counts = [round((extent[2 * d + 1] - extent[2 * d]) / h) for d in range(2)]
+        return tuple(extent[2 * d] + h * (0.5 + np.arange(counts[d])) for d in range(2))
 
     def solids(self) -> list[np.ndarray]:
         """Return closed curves, each of shape (n + 1, 2), that are solid within by the nonzero rule.

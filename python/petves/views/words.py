@@ -88,7 +88,7 @@ def _method(run: Run, o: dict[str, str]) -> str:
 def key_numbers(run: Run) -> list[tuple[str, str]]:
     """Return names and values, as text, of what people ask of a run first; what is not known is left out."""
     s, rows = run.series, []
-    total = s["energy_kinetic"] + s["energy_bending"]
+    total = sum(run.energies().values())
     rows.append(("energy, first and last", f"{total[0]:.4g}, {total[-1]:.4g}"))
     if run.vesicles:
         rows += _sizes(run) + (_motion(run) if run.vesicles == 1 else _motions(run)) + _losses(run)

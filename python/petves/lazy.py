@@ -1,0 +1,56 @@
+"""Arrays of HDF5 files that are read when they are used, for xarray."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from xarray.backends import BackendArray
+from xarray.core import indexing
+
+from petves.runfiles import read_h5
+
+
+class FileArray(BackendArray):
+    """The first rows of a dataset of an HDF5 file; rows that a run under way has not written yet are NaN.
+
+    Parameters
+    ----------
+    path : Path
+        The file. It is open only while it is read.
+    name : str
+        The dataset.
+    rows : int
+        How many rows, along the first axis.
+    """
+
+    def __init__(self, path: Path, name: str, rows: int) -> None:
+        self.path, self.name = path, name
+        self.shape, self.dtype = read_h5(path, lambda file: ((rows, *file[name].shape[1:]), file[name].dtype))
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> np.ndarray:
+        """Return a part, as xarray asks for it."""
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._part)
+
+    def _part(self, key: tuple[Any, ...]) -> np.ndarray:
+        """Return a part by integers and by slices with steps forward."""
+        rows, *rest = key
+        one = not isinstance(rows, slice)
+        start, stop, step = (slice(rows, rows + 1) if one else rows).indices(self.shape[0])
+
+        def read(file: h5py.File) -> np.ndarray:
+            end = min(stop, len(file[self.name]))
+            values = file[self.name][(slice(min(start, end), end, step), *rest)]
+            missing = len(range(start, stop, step)) - len(values)
+            if missing:
+                values = np.concatenate([values, np.full((missing, *values.shape[1:]), np.nan)])
+            return values[0] if one else values
+
+        return read_h5(self.path, read)
+
+
+def lazy_array(path: Path, name: str, rows: int) -> indexing.LazilyIndexedArray:
+    """Return the first rows of a dataset as xarray takes them; the parameters are those of `FileArray`."""
+    return indexing.LazilyIndexedArray(FileArray(path, name, rows))

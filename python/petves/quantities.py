@@ -1,0 +1,191 @@
+"""Quantities that follow from saved fields: vorticity, stream function, shear stress on walls, values at points.
+
+The functions take what `petves.load` returns, of all saved times or of some, such as ``data.isel(time=-1)``, and return
+xarray's arrays with units. The functions of arrays behind them have names that end in ``_of``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from petves.dataset import unit
+from petves.errors import RunError
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike
+
+SIDES = {"bottom": ("u", -2, 1), "top": ("u", -2, -1), "left": ("v", -1, 1), "right": ("v", -1, -1)}
+"""Of each side: the velocity along it, the axis across it, and the step of cells away from it."""
+
+
+def slope_of(values: np.ndarray, h: float, axis: int, periodic: bool) -> np.ndarray:
+    """Return the derivative along an axis of the grid by central differences, one-sided ones at walls."""
+    if periodic:
+        return (np.roll(values, -1, axis) - np.roll(values, 1, axis)) / (2 * h)
+    return np.gradient(values, h, axis=axis, edge_order=2)
+
+
+def vorticity_of(u: np.ndarray, v: np.ndarray, h: float, periodic: Sequence[bool]) -> np.ndarray:
+    """Return dv/dx - du/dy, shape (..., ny, nx); `periodic` says whether x and y are."""
+    return slope_of(v, h, -1, periodic[0]) - slope_of(u, h, -2, periodic[1])
+
+
+def stream_function_of(u: np.ndarray, v: np.ndarray, h: float) -> np.ndarray:
+    """Return the stream function, shape (..., ny, nx), zero in the first cell, by the trapezoidal rule along x and y."""
+    across = np.zeros_like(u)
+    across[..., 1:, :] = np.cumsum(0.5 * h * (u[..., 1:, :] + u[..., :-1, :]), axis=-2)
+    along = np.zeros_like(v[..., 0, :])
+    along[..., 1:] = np.cumsum(0.5 * h * (v[..., 0, 1:] + v[..., 0, :-1]), axis=-1)
+    return across - along[..., None, :]
+
+
+def wall_shear_of(along: np.ndarray, h: float, nu: float, axis: int, step: int) -> np.ndarray:
+    """Return nu times the derivative away from a wall of the velocity along it, by its three next cells.
+
+    The parabola through the values f_0, f_1, f_2 at h/2, 3 h/2 and 5 h/2 has the slope (-2 f_0 + 3 f_1 - f_2)/h at 0.
+    """
+    cells = [np.take(along, k if step > 0 else -1 - k, axis=axis) for k in range(3)]
+    return nu * (-2 * cells[0] + 3 * cells[1] - cells[2]) / h
+
+
+def interpolate_of(
+    values: np.ndarray, points: np.ndarray, box: np.ndarray, h: float, periodic: Sequence[bool]
+) -> np.ndarray:
+    """Return bilinear values at points (n, 2), shape (..., n): wrapped where the box is periodic, continued to its walls."""
+    cells = []
+    for d in range(2):
+        n, place = values.shape[-1 - d], (points[:, d] - box[2 * d]) / h - 0.5
+        if not periodic[d] and not np.all((place >= -0.5 - 1e-9) & (place <= n - 0.5 + 1e-9)):
+            raise RunError(f"a point lies outside of the box; allowed: {'xy'[d]} from {box[2*d]:g} to {box[2*d+1]:g}")
+        low = np.floor(place).astype(int) if periodic[d] else np.clip(np.floor(place).astype(int), 0, n - 2)
+        cells.append((low % n, (low + 1) % n, place - low))
+    (i, i1, x), (j, j1, y) = cells
+    return (1 - y) * ((1 - x) * values[..., j, i] + x * values[..., j, i1]) + y * (
+        (1 - x) * values[..., j1, i] + x * values[..., j1, i1]
+    )
+
+
+def vorticity(data: xarray.Dataset) -> xarray.DataArray:
+    """Return the vorticity dv/dx - du/dy at cell centres (1/time), dimensions (time, y, x).
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `petves.load` returns, or some times of it.
+    """
+    periodic = [name in data.attrs["periodic"] for name in "xy"]
+    make = lambda one: vorticity_of(one["u"].values, one["v"].values, data.attrs["h"], periodic)
+    return _array(data, "vorticity", make, ("y", "x"))
+
+
+def stream_function(data: xarray.Dataset) -> xarray.DataArray:
+    """Return psi with u = d psi/dy and v = -d psi/dx (length^2/time), zero in the first cell, dimensions (time, y, x).
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `petves.load` returns, or some times of it.
+    """
+    make = lambda one: stream_function_of(one["u"].values, one["v"].values, data.attrs["h"])
+    return _array(data, "stream_function", make, ("y", "x"))
+
+
+def wall_shear_stress(data: xarray.Dataset) -> xarray.Dataset:
+    """Return the shear stress of the fluid on each wall of the box (length^2/time^2, for a density of 1).
+
+    It is nu times the derivative of the velocity along the wall by the distance from it: bottom and top, dimensions
+    (time, x), and left and right, (time, y), where they are walls.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `petves.load` returns, or some times of it.
+    """
+    import xarray
+
+    sides = {}
+    for side in walls_of(data.attrs["walls"]):
+        name, axis, step = SIDES[side]
+        make = lambda one: wall_shear_of(one[name].values, data.attrs["h"], data.attrs["nu"], axis, step)
+        sides[side] = _array(data, "wall_shear_stress", make, ("x" if axis == -2 else "y",))
+    return xarray.Dataset(sides)
+
+
+def total_pressure(data: xarray.Dataset) -> xarray.DataArray:
+    """Return p with its mean gradient along x (length^2/time^2), which p itself is without.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `petves.load` returns, or some times of it.
+    """
+    total = data["p"] + data["pressure_gradient"] * (data["x"] - data["x"].mean())
+    return total.transpose(*data["p"].dims).rename("total_pressure").assign_attrs(units=unit("p"))
+
+
+def probe(data: xarray.Dataset, points: ArrayLike) -> xarray.Dataset:
+    """Return u, v and the total pressure p at points, dimensions (time, point), with the coordinates x and y.
+
+    Values are bilinear between cell centres.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `petves.load` returns, or some times of it.
+    points : array_like, shape (n, 2)
+        Places in the box; along a periodic direction any.
+    """
+    import xarray
+
+    places = np.reshape(np.asarray(points, float), (-1, 2))
+    periodic = [name in data.attrs["periodic"] for name in "xy"]
+    box, h, found = data.attrs["box"], data.attrs["h"], {}
+    for name in "uvp":
+        found[name] = _array(
+            data, name, lambda one: interpolate_of(one[name].values, places, box, h, periodic), ("point",)
+        )
+    along = xarray.DataArray(places[:, 0] - np.mean(box[:2]), dims="point")
+    found["p"] = (
+        (found["p"] + data["pressure_gradient"] * along).transpose(*found["p"].dims).assign_attrs(found["p"].attrs)
+    )
+    places = {name: ("point", places[:, d], {"units": "length"}) for d, name in enumerate("xy")}
+    return xarray.Dataset(found).assign_coords(places)
+
+
+def line(data: xarray.Dataset, begin: ArrayLike, end: ArrayLike, count: int = 200) -> xarray.Dataset:
+    """Return `probe` at evenly spaced points of a line, with the coordinate distance from its begin (length).
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `petves.load` returns, or some times of it.
+    begin, end : array_like, shape (2,)
+        Its ends.
+    count : int
+        How many points.
+    """
+    points = np.linspace(begin, end, count)
+    distance = np.linalg.norm(points - points[0], axis=1)
+    return probe(data, points).assign_coords(distance=("point", distance, {"units": "length"}))
+
+
+def walls_of(directions: str) -> list[str]:
+    """Return the sides of the box that are walls, where walls bound the directions "x", "y" or "xy"."""
+    return [side for side, (_, axis, _) in SIDES.items() if "yx"[axis + 2] in directions]
+
+
+def _array(
+    data: xarray.Dataset, name: str, make: Callable[[xarray.Dataset], np.ndarray], dims: tuple[str, ...]
+) -> xarray.DataArray:
+    """Return what `make` makes of each time of the data, a frame in memory at a time, with its unit and coordinates."""
+    import xarray
+
+    one = "time" not in data["u"].dims
+    values = make(data) if one else np.stack([make(data.isel(time=k)) for k in range(data.sizes["time"])])
+    dims = dims if one else ("time", *dims)
+    coordinates = {key: data[key] for key in ("time", *dims) if key in data.coords}
+    return xarray.DataArray(values, coordinates, dims, name, {"units": unit(name)})

@@ -1,0 +1,108 @@
+"""Curves: columns of series.csv over time, values at points and along lines and walls."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from pathlib import Path
+from typing import Sequence
+
+import numpy as np
+
+from petves.dataset import load, unit
+from petves.quantities import line, probe, wall_shear_stress
+from petves.run import Run, RunError
+from petves.views.figures import MANY, PLAIN, Look, dress, legend_above, new_figure, save_figure
+
+USUAL = ("gap", "pressure_drop", "obstacle_torque", "viscosity")  # columns drawn where a run has them
+Panel = tuple[str, str, list[tuple[str, np.ndarray]]]
+"""What is drawn, its unit, and curves with their labels."""
+
+
+def spelled(text: str) -> str:
+    """Return a unit in matplotlib's letters: length^2/time as length$^2$/time."""
+    return re.sub(r"\^(\d)", r"$^\1$", text)
+
+
+def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, path: Path, look: Look) -> Path:
+    """Draw panels one above the other over one x; the labels of the first are the legend of all."""
+    figure, axes = new_figure(6, 1.0 + 1.7 * len(panels), rows=len(panels), look=look)
+    for panel, (name, units, curves) in zip(axes, panels):
+        for k, (label, values) in enumerate(curves):
+            many = dict(color="black", alpha=0.3, lw=0.5) if len(curves) > MANY else dict(color=f"C{k}")
+            panel.plot(x, values, label=label, **many)
+        dress(panel, ylabel=f"{name}\n({spelled(units)})" if units not in ("", "1") else name, xlim=(x[0], x[-1]))
+        panel.yaxis.label.set_size(9)
+    axes[-1].set_xlabel(xlabel)
+    figure.align_ylabels(axes)
+    if 1 < len(panels[0][2]) <= MANY:
+        legend_above(axes[0], columns=4)
+    return save_figure(figure, path, look)
+
+
+def columns_of(run: Run, name: str) -> list[tuple[str, np.ndarray]]:
+    """Return a column with an empty label, or each of the columns name_1, name_2, ... with its number; [] if there is none."""
+    if name in run.series:
+        return [("", run.series[name])]
+    own = {k: v for k, v in run.series.items() if re.fullmatch(rf"{re.escape(name)}_\d+", k)}
+    if not own and name in run.columns_of_each():
+        return [("", values) for values in run.each(name).T]
+    return [(key[len(name) + 1 :], values) for key, values in own.items()]
+
+
+def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> list[Path]:
+    """Draw columns of series.csv over time into series.png, a panel each: those asked for, else those of USUAL with values.
+
+    A name without a number stands for all columns that have it with one (obstacle_torque). Without a column no picture.
+    """
+    known = dict.fromkeys(name for key in run.series for name in (key, re.sub(r"_\d+$", "", key)))
+    known |= dict.fromkeys(run.columns_of_each())
+    for name in columns:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            meant = f"; {near[0]} is meant?" if near else ""
+            shown = ", ".join(key for key in known if not re.search(r"_\d+$", key))
+            raise RunError(
+                f"column {name}: unknown{meant}; allowed: {shown}, and of one of several with its number, gap_1"
+            )
+    usual = [name for name in USUAL if name != "gap" or run.vesicles > 1]
+    found = {name: columns_of(run, name) for name in columns or usual}
+    if not columns:
+        found = {name: curves for name, curves in found.items() if any(np.nan_to_num(y).any() for _, y in curves)}
+    panels = [(name, unit(name), curves) for name, curves in found.items()]
+    if not panels:
+        return []
+    return [draw_curves(run.series["time"], panels, "time $t$", run.folder / "series.png", look)]
+
+
+def plot_points(run: Run, points: Sequence[Sequence[float]], look: Look = PLAIN) -> Path:
+    """Draw u, v and the total pressure at points over the saved times into points.png."""
+    found = probe(load(run.folder, "xarray"), points)
+    labels = [f"({x:g}, {y:g})" for x, y in points]
+    panels = [(f"${name}$", unit(name), list(zip(labels, found[name].values.T))) for name in "uvp"]
+    return draw_curves(run.time, panels, "time $t$", run.folder / "points.png", look)
+
+
+def plot_line(run: Run, ends: Sequence[float], frame: int = -1, look: Look = PLAIN, name: str = "line.png") -> Path:
+    """Draw u, v and the total pressure at a saved time along a line; `ends` are x, y of its begin and of its end."""
+    found = line(load(run.folder, "xarray").isel(time=frame), ends[:2], ends[2:])
+    panels = [(f"${name}$", unit(name), [("", found[name].values)]) for name in "uvp"]
+    xlabel = f"distance (length), $t$ = {run.time[frame]:.4g}"
+    return draw_curves(found["distance"].values, panels, xlabel, run.folder / name, look)
+
+
+def plot_walls(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "walls.png") -> Path:
+    """Draw the shear stress on the walls at a saved time: on bottom and top along x, on left and right along y."""
+    found = wall_shear_stress(load(run.folder, "xarray").isel(time=frame))
+    if not found:
+        raise RunError(f"{run.folder}: the box has no wall")
+    figure, axes = new_figure(6, 1.0 + 1.7 * len(run.walls), rows=len(run.walls), look=look)
+    for panel, along in zip(axes, reversed(run.walls.translate({120: "y", 121: "x"}))):
+        for side, stress in found.items():
+            if along in stress.dims:
+                panel.plot(stress[along], stress, "--" if side in ("top", "right") else "-", label=side)
+        names = dict(xlabel=f"${along}$ (length)", ylabel=f"wall shear stress\n({spelled(unit('p'))})")
+        dress(panel, **names)
+        legend_above(panel)
+    axes[0].set_title(f"$t$ = {run.time[frame]:.4g}", loc="right", fontsize=10)
+    return save_figure(figure, run.folder / name, look)
