@@ -1,6 +1,6 @@
-"""Check that docs/options.md has the rows of ``petves -help options``; print what is missing, exit 1.
+"""Check that docs/options.md has the rows of ``petves -help options``, and python/petves/options.pyi the names; exit 1 if not.
 
-With ``--write``, write the page's tables anew instead.
+What is missing is printed. With ``--write``, the page's tables and the stub are written anew instead.
 """
 
 from __future__ import annotations
@@ -14,6 +14,23 @@ from pathlib import Path
 from typing import NamedTuple
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "options.md"
+STUB = PAGE.parent.parent / "python" / "petves" / "options.pyi"
+OF_SOLVERS = [
+    f"{prefix}_ksp_{name}" for prefix in ("coupled", "tension", "bending") for name in ("rtol", "max_it", "monitor")
+]
+STUB_HEAD = '''# fmt: off
+"""The program's options, for editors that complete names; python/check_options.py --write makes this file."""
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Literal, TypedDict
+
+import numpy as np
+
+Value = str | float | bool | PathLike[str] | np.ndarray | Sequence[str | float | Sequence[float]] | None
+
+class Options(TypedDict, total=False):
+'''
 
 ENTRY = re.compile(r"^  (-\w+)(?: (\S+))?(?:  \[(.*)\])?\n((?:      .*\n?)+)", re.MULTILINE)
 BEGIN, END = "<!-- begin: python/check_options.py --write makes these tables -->\n", "<!-- end -->\n"
@@ -55,6 +72,16 @@ def tables(binary: str) -> str:
     return "\n".join(parts)
 
 
+def stub(binary: str) -> str:
+    """Return the stub: each option with its words, or any value, and what it is."""
+    lines = []
+    for option in described(binary):
+        words = option.allowed.split("|") if "|" in option.allowed else []
+        kind = f"Literal[{', '.join(map(repr, words))}] | None" if words else "Value"
+        lines.append(f"    {option.name[1:]}: {kind}  # {option.what}\n")
+    return STUB_HEAD + "".join(lines) + "".join(f"    {name}: Value  # PETSc's, of the solver\n" for name in OF_SOLVERS)
+
+
 def missing(binary: str, page: str) -> list[str]:
     """Return a line for each row that the page's tables lack, or have too much."""
     shown = dict.fromkeys(re.findall(r"^\| `-.*\|$", page.partition(BEGIN)[2].partition(END)[0], re.MULTILINE))
@@ -70,8 +97,9 @@ def main() -> int:
     if "--write" in sys.argv[1:]:
         before, _, rest = page.partition(BEGIN)
         PAGE.write_text(before + BEGIN + "\n" + tables(binary) + "\n" + END + rest.partition(END)[2])
+        STUB.write_text(stub(binary))
         return 0
-    lines = missing(binary, page)
+    lines = missing(binary, page) + ([] if STUB.read_text() == stub(binary) else [f"{STUB} is not current"])
     print("\n".join(lines) or "docs/options.md has every option")
     return 1 if lines else 0
 

@@ -21,7 +21,7 @@ PAGES = [
     ("petves.views.movie", "movie", ""),
     ("petves.views.report", "report", ""),
     ("petves.views.compare", "compare", "Compare, sweep"),
-    ("petves.sweep", "sweep", ""),
+    ("petves.sweeps", "sweep", ""),
     ("petves.rheology", "stresslets", "Suspensions"),
     ("petves.rheology", "velocity_profile", ""),
     ("petves.rheology", "area_fraction_profile", ""),

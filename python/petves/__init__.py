@@ -7,8 +7,20 @@ from typing import Any
 from petves.errors import Error
 
 __version__ = "0.2.0"
-__all__ = ["Error", "Run", "RunError", "Simulation", "load"]
-_HOME = {"Run": "run", "RunError": "run", "Simulation": "simulation", "load": "dataset"}
+_HOME = {
+    "Run": "run:Run",
+    "RunError": "run:RunError",
+    "Simulation": "simulation:Simulation",
+    "compare": "views.compare:compare",
+    "load": "dataset:load",
+    "movie": "views.movie:movie",
+    "plot": "views.plot:plot_run",
+    "quantities": "quantities:",
+    "report": "views.report:report",
+    "sweep": "sweeps:sweep",
+}
+"""The module of each name and the name there; a module's without one."""
+__all__ = ["Error", *_HOME]
 
 
 def __getattr__(name: str) -> Any:
@@ -17,7 +29,9 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'petves' has no attribute {name!r}")
     import importlib
 
-    return getattr(importlib.import_module(f"petves.{_HOME[name]}"), name)
+    module, _, inside = _HOME[name].partition(":")
+    found = importlib.import_module(f"petves.{module}")
+    return getattr(found, inside) if inside else found
 
 
 def __dir__() -> list[str]:

@@ -13,7 +13,7 @@ from typing import Any, Callable
 from petves.errors import Error
 from petves.program import become
 
-HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "report", "compare")} | {"sweep": "petves.sweep"}
+HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "report", "compare")} | {"sweep": "petves.sweeps"}
 """The module of each command, imported when the command is run."""
 
 

@@ -101,8 +101,8 @@ class Measures:
 
     @property
     def energy(self) -> float:
-        """Kinetic, bending and contact energy (length^4/time^2)."""
-        return self.energy_kinetic + self.energy_bending + self.energy_contact
+        """Kinetic, bending, gravity and contact energy (length^4/time^2)."""
+        return self.energy_kinetic + self.energy_bending + self.energy_gravity + self.energy_contact
 
     energy_kinetic = _column("energy_kinetic", "Kinetic energy of the velocity minus the background (length^4/time^2).")
     energy_bending = _column("energy_bending", "Bending energy (length^4/time^2).")

@@ -7,15 +7,6 @@ import sys
 from typing import Any, Callable, Iterator
 
 
-def bar_class() -> type | None:
-    """Return tqdm's class; None when tqdm is not installed."""
-    try:
-        from tqdm import tqdm
-    except ImportError:
-        return None
-    return tqdm
-
-
 @contextlib.contextmanager
 def progress_bar(
     end: float, begin: float = 0.0, show: bool | None = None, unit: str = ""
@@ -36,7 +27,10 @@ def progress_bar(
     callable
         ``bar(value)`` moves it.
     """
-    tqdm = bar_class()
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        tqdm = None
     shown = sys.stderr.isatty() if show is None else show
     if tqdm is None or not shown or end <= begin:
         yield lambda value: None

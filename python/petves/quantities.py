@@ -22,16 +22,13 @@ SIDES = {"bottom": ("u", -2, 1), "top": ("u", -2, -1), "left": ("v", -1, 1), "ri
 """Of each side: the velocity along it, the axis across it, and the step of cells away from it."""
 
 
-def slope_of(values: np.ndarray, h: float, axis: int, periodic: bool) -> np.ndarray:
-    """Return the derivative along an axis of the grid by central differences, one-sided ones at walls."""
-    if periodic:
-        return (np.roll(values, -1, axis) - np.roll(values, 1, axis)) / (2 * h)
-    return np.gradient(values, h, axis=axis, edge_order=2)
-
-
 def vorticity_of(u: np.ndarray, v: np.ndarray, h: float, periodic: Sequence[bool]) -> np.ndarray:
-    """Return dv/dx - du/dy, shape (..., ny, nx); `periodic` says whether x and y are."""
-    return slope_of(v, h, -1, periodic[0]) - slope_of(u, h, -2, periodic[1])
+    """Return dv/dx - du/dy by central differences, one-sided ones at walls; `periodic` says whether x and y are."""
+    slopes = []
+    for values, axis, wrapped in ((v, -1, periodic[0]), (u, -2, periodic[1])):
+        around = (np.roll(values, -1, axis) - np.roll(values, 1, axis)) / (2 * h)
+        slopes.append(around if wrapped else np.gradient(values, h, axis=axis, edge_order=2))
+    return slopes[0] - slopes[1]
 
 
 def stream_function_of(u: np.ndarray, v: np.ndarray, h: float) -> np.ndarray:
@@ -70,40 +67,23 @@ def interpolate_of(
 
 
 def vorticity(data: xarray.Dataset) -> xarray.DataArray:
-    """Return the vorticity dv/dx - du/dy at cell centres (1/time), dimensions (time, y, x).
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        What `petves.load` returns, or some times of it.
-    """
+    """Return the vorticity dv/dx - du/dy of the data at cell centres (1/time), dimensions (time, y, x)."""
     periodic = [name in data.attrs["periodic"] for name in "xy"]
     make = lambda one: vorticity_of(one["u"].values, one["v"].values, data.attrs["h"], periodic)
     return _array(data, "vorticity", make, ("y", "x"))
 
 
 def stream_function(data: xarray.Dataset) -> xarray.DataArray:
-    """Return psi with u = d psi/dy and v = -d psi/dx (length^2/time), zero in the first cell, dimensions (time, y, x).
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        What `petves.load` returns, or some times of it.
-    """
+    """Return psi of the data, u = d psi/dy and v = -d psi/dx (length^2/time), zero in the first cell, (time, y, x)."""
     make = lambda one: stream_function_of(one["u"].values, one["v"].values, data.attrs["h"])
     return _array(data, "stream_function", make, ("y", "x"))
 
 
 def wall_shear_stress(data: xarray.Dataset) -> xarray.Dataset:
-    """Return the shear stress of the fluid on each wall of the box (length^2/time^2, for a density of 1).
+    """Return the shear stress of the data on each wall of the box (length^2/time^2, for a density of 1).
 
     It is nu times the derivative of the velocity along the wall by the distance from it: bottom and top, dimensions
     (time, x), and left and right, (time, y), where they are walls.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        What `petves.load` returns, or some times of it.
     """
     import xarray
 
@@ -116,13 +96,7 @@ def wall_shear_stress(data: xarray.Dataset) -> xarray.Dataset:
 
 
 def total_pressure(data: xarray.Dataset) -> xarray.DataArray:
-    """Return p with its mean gradient along x (length^2/time^2), which p itself is without.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        What `petves.load` returns, or some times of it.
-    """
+    """Return p of the data with its mean gradient along x (length^2/time^2), which p itself is without."""
     total = data["p"] + data["pressure_gradient"] * (data["x"] - data["x"].mean())
     return total.transpose(*data["p"].dims).rename("total_pressure").assign_attrs(units=unit("p"))
 

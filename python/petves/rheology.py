@@ -1,5 +1,6 @@
 """Suspensions in a channel: stresses, profiles over its height, displacements. series.csv has viscosity and normal
-stress of every step; what is here is of saved times, and of single vesicles."""
+stress of every step; what is here is of saved times, and of single vesicles. `run` is ``petves.load(folder, "numpy")``,
+`frame` the number of a saved time, -1 the last one."""
 
 from __future__ import annotations
 
@@ -9,19 +10,12 @@ from petves.run import Run, centroid
 
 
 def stresslets(run: Run, frame: int) -> np.ndarray:
-    """Return SUM f X over the markers of each vesicle, f its membrane's force, shape (vesicles, 2, 2).
+    """Return SUM f X over the markers of each vesicle of `run` at `frame`, f its membrane's force, shape (vesicles, 2, 2).
 
     The sum of force a times place b is S_ab = -SUM ds (sigma tau_a tau_b + c_b k_a k_b), tau the tangent and k the second
     derivative along the membrane, length^4/time^2 with density 1. Where the viscosity inside is lam times that outside, nu (1
     - lam) SUM (U_a n_b + n_a U_b) ds comes on top, U the markers' velocity and n the outward normal. Divided by minus the
     area of the box it is what the vesicle adds to the stress (Batchelor 1970). Forces of contact between vesicles (-contact_repulsion) are not in it.
-
-    Parameters
-    ----------
-    run : Run
-        The run, read with ``petves.load(folder, "numpy")``.
-    frame : int
-        Number of a saved time, -1 the last one.
     """
     kind = run.options().get("membrane_derivative", "spectral")
     found = []
@@ -45,31 +39,14 @@ def stresslets(run: Run, frame: int) -> np.ndarray:
 
 
 def velocity_profile(run: Run, frame: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return y of the rows of cells and the mean of u over x there (length, length/time), each of shape (ny,).
-
-    Parameters
-    ----------
-    run : Run
-        The run, read with ``petves.load(folder, "numpy")``.
-    frame : int
-        Number of a saved time, -1 the last one.
-    """
+    """Return y of the rows of cells and the mean of u over x there in `run` at `frame` (length, length/time), each (ny,)."""
     return run.cell_centers()[1], run.fields(frame)[0].mean(axis=1)
 
 
 def area_fraction_profile(run: Run, frame: int, layers: int = 20) -> tuple[np.ndarray, np.ndarray]:
-    """Return y in the middle of so many layers of equal height, and the part of each that vesicles take up.
+    """Return y in the middle of `layers` of equal height, and the part of each that vesicles of `run` take up at `frame`.
 
     Each vesicle is the polygon of its markers, cut at the layers' bounds exactly.
-
-    Parameters
-    ----------
-    run : Run
-        The run, read with ``petves.load(folder, "numpy")``.
-    frame : int
-        Number of a saved time, -1 the last one.
-    layers : int
-        How many.
     """
     bounds = np.linspace(run.box[2], run.box[3], layers + 1)
     area = sum(_below(run.outline(frame, vesicle), bounds) for vesicle in range(run.vesicles))
@@ -77,28 +54,17 @@ def area_fraction_profile(run: Run, frame: int, layers: int = 20) -> tuple[np.nd
 
 
 def centers(run: Run) -> np.ndarray:
-    """Return the centroids of all vesicles at the saved times, shape (T, vesicles, 2); seams are not folded back.
-
-    Parameters
-    ----------
-    run : Run
-        The run, read with ``petves.load(folder, "numpy")``.
-    """
+    """Return the centroids of all vesicles of `run` at the saved times, shape (T, vesicles, 2); seams are not folded back."""
     return np.array(
         [[centroid(run.outline(frame, v)) for v in range(run.vesicles)] for frame in range(len(run.time))]
     ).reshape(len(run.time), run.vesicles, 2)
 
 
 def mean_square_displacement(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lags (time) and the mean square displacement of centres along x and y (length^2), shape (T, 2).
+    """Return the lags (time) and the mean square displacement of centres of `run` along x and y (length^2), shape (T, 2).
 
     Means over the vesicles and over all pairs of saved times with that lag; saved times are taken to be evenly spaced. In
     a sheared channel x is mostly the flow's, y is what collisions do.
-
-    Parameters
-    ----------
-    run : Run
-        The run, read with ``petves.load(folder, "numpy")``.
     """
     places = centers(run)
     lags = [np.mean((places[lag:] - places[: len(places) - lag]) ** 2, axis=(0, 1)) for lag in range(len(places))]

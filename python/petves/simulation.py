@@ -9,28 +9,21 @@ import shutil
 import sys
 import weakref
 from pathlib import Path
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
 from petves.errors import Error
-from petves.library import (
-    MAX_MESSAGE,
-    MAX_PATH,
-    PETSC_ERR_USER_INPUT,
-    Flow,
-    FlowFunction,
-    Handle,
-    Int,
-    communicator,
-    flow_function,
-    library,
-    one_thread,
-    option_text,
-)
+from petves.library import MAX_MESSAGE, MAX_PATH, PETSC_ERR_USER_INPUT, Flow, FlowFunction, Handle, Int
+from petves.library import communicator, flow_function, library, one_thread, option_text
 from petves.petsc import PETSc
 from petves.progress import progress_bar
 from petves.state import State
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from petves.options import Options
 
 Callback = Callable[["Simulation"], Any]
 
@@ -85,7 +78,7 @@ class Simulation(State):
         comm: PETSc.Comm | None = None,
         flow: FlowFunction | None = None,
         quiet: bool = True,
-        **options: Any,
+        **options: Unpack[Options],
     ) -> None:
         self._lib = library()
         self._handle = Handle()

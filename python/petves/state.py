@@ -24,6 +24,23 @@ class State(Measures):
     _in_force: dict[str, str]
     _gathered: dict[str, np.ndarray]
 
+    def __repr__(self) -> str:
+        """Return the scene in a line: vesicles, flow, grid, time, folder."""
+        if not getattr(self, "_in_force", None):
+            return "<petves.Simulation>"
+        o, count = self._in_force, self.vesicles
+        flow = {"quiescent": "fluid at rest", "custom": "a flow of the caller's"}.get(o["flow_type"], o["flow_type"])
+        cells, sides = o["domain_cells"].replace(",", " x "), f"{o['domain_bc_x']} in x, {o['domain_bc_y']} in y"
+        vesicles = f"{count or 'no'} vesicle{'s' * (count != 1)}"
+        time = "closed" if not self._handle else f"t = {self.time:.4g} of {float(o['time_end']):.4g}"
+        return f"<petves.Simulation: {vesicles} in {flow}, {cells} cells, {sides}, {time}, {self.folder}>"
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Set an attribute of the package's own; others are refused, as they would change nothing."""
+        if not name.startswith("_"):
+            raise AttributeError(f"{name}: a simulation has no attribute to set; options are given when it is made")
+        object.__setattr__(self, name, value)
+
     @property
     def folder(self) -> Path:
         """The run's output folder."""

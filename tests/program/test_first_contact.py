@@ -1,5 +1,6 @@
 """What a new user meets first: help, version, the manual page and completion, the words run and plot, the Makefile."""
 
+import ast
 import os
 import re
 import shutil
@@ -11,7 +12,7 @@ import pytest
 from harness import ENVIRONMENT, PETVES, PROGRAMS, ROOT, SANITIZE, mpirun, without_mpirun
 
 sys.path.insert(0, str(ROOT / "python"))
-from check_options import described, missing  # noqa: E402
+from check_options import STUB, described, missing, stub  # noqa: E402
 from make_manual import completion, manual  # noqa: E402
 
 SMALL = "-domain_cells 24,24 -vesicle_semi_axes 0.4,0.5 -time_step 0.01 -time_end 0.01".split()
@@ -46,6 +47,13 @@ def test_page_of_options_has_the_rows_of_the_table():
         f"docs/options.md lacks {row}",
         f"docs/options.md has {row.replace('0.01', '0.02')}",
     ]
+
+
+def test_stub_has_the_options_of_the_table():
+    """Editors complete their names in petves.Simulation(...): python/check_options.py --write writes the stub anew."""
+    assert STUB.read_text() == stub(PETVES)
+    body = ast.parse(STUB.read_text()).body[-1].body
+    assert [entry.target.id for entry in body][: len(described(PETVES))] == [x.name[1:] for x in described(PETVES)]
 
 
 def test_help_of_a_word():

@@ -12,7 +12,7 @@ import pytest
 from harness import ENVIRONMENT, PETVES, ROOT, read_series
 from restarts import without_wall
 
-from petves.sweep import _name
+from petves.sweeps import _name
 
 pytestmark = pytest.mark.xdist_group("sweep")
 

@@ -9,6 +9,7 @@ import resource
 import shutil
 import subprocess
 import sys
+import tempfile
 
 import pytest
 from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, without_mpirun
@@ -35,8 +36,12 @@ def test_names_are_offered_before_they_are_imported():
     done = python(["-c", "import petves; print(dir(petves))"], PYTHONPATH=str(ROOT / "python"))
     names = {name for name in ast.literal_eval(done.stdout) if not name.startswith("__")}
     stub = ast.parse((ROOT / "python" / "petves" / "__init__.pyi").read_text())
-    imported = {node.names[0].asname for node in stub.body if isinstance(node, ast.ImportFrom)}
-    assert names == imported == {"Error", "Run", "RunError", "Simulation", "load"}
+    imported = {node.names[0].asname for node in stub.body if isinstance(node, (ast.Import, ast.ImportFrom))}
+    views = {"plot", "movie", "report", "compare", "sweep", "quantities"}
+    assert names == imported == {"Error", "Run", "RunError", "Simulation", "load"} | views
+    home = "petves.views.plot petves.views.movie petves.views.report petves.views.compare petves.sweeps".split()
+    code = "import petves, petves.sweeps\nprint(*(getattr(petves, x).__module__ for x in 'plot movie report compare sweep'.split()))"
+    assert python(["-c", code], PYTHONPATH=str(ROOT / "python")).stdout.split() == home
     assert (ROOT / "python" / "petves" / "py.typed").is_file()
 
 
@@ -60,6 +65,24 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert done.returncode == 0, done.stdout + done.stderr
         assert not without_mpirun(done.stderr)
         assert (tmp_path / LEFT.get(name, f"{name}.png")).stat().st_size > 1000
+
+    def test_a_simulation_says_what_it_is_and_takes_no_attributes():
+        code = (
+            "import petves\n"
+            "sim = petves.Simulation(domain_cells=(24, 24), flow_type='shear', time_end=0.02, output_dir='out')\n"
+            "sim.run()\nprint(sim)\n"
+            "for name in ('foo', 'time'):\n"
+            "    try:\n        setattr(sim, name, 3)\n"
+            "    except AttributeError as error:\n        print(error)\n"
+            "sim.close()\nprint(repr(sim))\n"
+        )
+        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY))
+        with tempfile.TemporaryDirectory() as folder:
+            done = python(["-c", f"import os\nos.chdir({folder!r})\n{code}"], **paths)
+        scene = "<petves.Simulation: 1 vesicle in shear, 24 x 24 cells, wall in x, wall in y, "
+        refused = ": a simulation has no attribute to set; options are given when it is made"
+        expected = [f"{scene}t = 0.02 of 0.02, out>", f"foo{refused}", f"time{refused}", f"{scene}closed, out>"]
+        assert done.stdout.splitlines() == expected, done.stderr
 
     def test_seven_examples():
         assert len(EXAMPLES) == 7

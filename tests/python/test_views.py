@@ -12,6 +12,7 @@ from petves.views import curves, field, movie, plot
 from petves.views.figures import Look
 from petves.views.movie import movie as film
 from petves.views.plot import plot_run
+from petves.views.words import key_numbers, scene_in_words
 
 pytestmark = pytest.mark.xdist_group("views")  # its tests share runs
 
@@ -174,6 +175,19 @@ def test_letters_of_pdf_and_svg_are_letters(folders):
         assert b"/Type3" not in path.read_bytes() and b"/FontFile2" in path.read_bytes()
     for path in plot_run(folder, Look(format="svg"), columns=["gap"]):
         assert re.search(r"<text[^>]*>gap</text>", path.read_text())
+
+
+def test_report_names_solids_forces_and_warnings(folders):
+    run = Run.read(folders("throat"))
+    run.summary["warnings"] = ["a film of one marker spacing"]
+    words, numbers = scene_in_words(run), dict(key_numbers(run))
+    assert "Solid bodies: 2, on a wall. The flux through the box is kept." in words
+    assert words[-1] == "Warning: a film of one marker spacing"
+    drop, gap = run.series["pressure_drop"][-1], run.series["gap"].min()
+    assert float(numbers["last pressure drop"]) == pytest.approx(drop, rel=1e-3)
+    assert float(numbers["least gap"]) == pytest.approx(gap, rel=1e-2)
+    assert "last obstacle torque" in numbers
+    assert "Solid bodies" not in "".join(scene_in_words(Run.read(folders("pair"))))
 
 
 def test_films_have_a_bar_of_the_tension(folders, monkeypatch, tmp_path):

@@ -15,7 +15,7 @@ from test_forged import external_link, external_storage, soft_link, virtual
 import petves
 from petves.errors import Error, RunError
 from petves.files import writing
-from petves.sweep import sweep
+from petves.sweeps import sweep
 
 pytestmark = pytest.mark.xdist_group("damaged")  # its tests share a run
 

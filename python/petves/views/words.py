@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from petves.run import Run
+from petves.views.curves import columns_of
 
+DRIVE = ("pressure_drop", "flux", "viscosity")  # columns of channels
 MANY = 8  # vesicles above which they are told of together
 FLOWS = {
     "quiescent": "There is no background flow",
@@ -32,7 +34,21 @@ def scene_in_words(run: Run) -> list[str]:
         f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {cells} cells (h = {run.h:g}), {walls}, holds a fluid of "
         f"viscosity {run.nu:g}: {INERTIA.get(inertia, inertia)}. {FLOWS[o['flow_type']].format(**o)}."
     )
-    return [fluid, _vesicles(run, o), _method(run, o)]
+    told = [fluid, _vesicles(run, o), _solids(run, o), _method(run, o)]
+    return [text for text in told if text] + [f"Warning: {text}" for text in run.summary.get("warnings", [])]
+
+
+def _solids(run: Run, o: dict[str, str]) -> str:
+    """Return what the obstacles are and what drives the flow past them; "" without obstacles."""
+    if not run.obstacles:
+        return ""
+    names = {"closed": "closed", "open": "on a wall", "spanning": "across a period"}
+    kinds = " or ".join(dict.fromkeys(names[kind] for kind in run.obstacle_kinds or ["closed"]))
+    moving = " They move and turn as prescribed." if o.get("obstacle_moving") == "true" else ""
+    kept = {"flux": " The flux through the box is kept.", "pressure": " The mean pressure gradient is kept."}
+    return f"Solid bodies: {len(run.obstacles)}, {kinds}.{moving}" + (
+        kept[o.get("flow_drive", "pressure")] if run.periods[0] else ""
+    )
 
 
 def _short(value: str) -> str:
@@ -92,6 +108,7 @@ def key_numbers(run: Run) -> list[tuple[str, str]]:
     rows.append(("energy, first and last", f"{total[0]:.4g}, {total[-1]:.4g}"))
     if run.vesicles:
         rows += _sizes(run) + (_motion(run) if run.vesicles == 1 else _motions(run)) + _losses(run)
+    rows += _forces(run)
     rows.append(("largest |div u| left", f"{s['div_max'].max():.1e}"))
     rows.append(("iterations a step", ", ".join(_iterations(s))))
     rows.append(("fast solves a step", f"{s['nsolve'][1:].mean():.0f}" if len(s["nsolve"]) > 1 else ""))
@@ -145,8 +162,15 @@ def _motions(run: Run) -> list[tuple[str, str]]:
         ("last mean axis", f"{np.degrees(np.angle(turned) / 2):.2f}°"),
         ("last order |<exp(2 i inclination)>|", f"{abs(turned):.3f}"),
         ("last tank-treading frequencies", _span(run.each("frequency")[-1], ".3g")),
-        ("last gap", _span(run.series["gap"][-1:], ".3g") if "gap" in run.series else ""),
     ]
+
+
+def _forces(run: Run) -> list[tuple[str, str]]:
+    """Return the least gap and what obstacles and walls feel at the end."""
+    last = {name: np.array([values[-1] for _, values in columns_of(run, name)]) for name in ("obstacle_torque", *DRIVE)}
+    gap = run.series.get("gap", np.zeros(0))
+    rows = [("least gap", _span(np.array([np.nanmin(gap)]), ".3g") if np.isfinite(gap).any() else "")]
+    return rows + [(f"last {name.replace('_', ' ')}", _span(values)) for name, values in last.items()]
 
 
 def _losses(run: Run) -> list[tuple[str, str]]:

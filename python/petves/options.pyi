@@ -1,0 +1,111 @@
+# fmt: off
+"""The program's options, for editors that complete names; python/check_options.py --write makes this file."""
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Literal, TypedDict
+
+import numpy as np
+
+Value = str | float | bool | PathLike[str] | np.ndarray | Sequence[str | float | Sequence[float]] | None
+
+class Options(TypedDict, total=False):
+    domain_box: Value  # x_min,x_max,y_min,y_max (length)
+    domain_cells: Value  # cells in x and y; cells must be square
+    domain_bc_x: Literal['wall', 'periodic', 'free'] | None  # boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields
+    domain_bc_y: Literal['wall', 'periodic', 'free'] | None  # boundaries at y_min and y_max; periodic where x is periodic too
+    flow_type: Literal['quiescent', 'shear', 'poiseuille', 'extension', 'uniform', 'custom'] | None  # background flow; custom: a function given from Python or C
+    flow_rate: Value  # rate of shear or extension (1/time)
+    flow_chi: Value  # in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle
+    flow_peak_velocity: Value  # u_max of poiseuille (length/time)
+    flow_ca: Value  # in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w
+    flow_velocity: Value  # uniform: u_x,u_y (length/time)
+    flow_half_width: Value  # L_y of poiseuille: half the channel's height (length)
+    flow_center_x: Value  # x_c of the background flow (length)
+    flow_center_y: Value  # y_c of the background flow (length)
+    flow_form: Literal['disturbance', 'total'] | None  # solve for u - u_inf, or (split, penalty) for u with moving walls as the paper
+    flow_drive: Literal['pressure', 'flux'] | None  # channel, periodic in x: which quantity vesicles and obstacles do not change, the mean pressure gradient or the flux
+    fluid_viscosity: Value  # nu (length^2/time; density is 1)
+    fluid_inertia: Literal['auto', 'none', 'unsteady', 'convective'] | None  # inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number
+    fluid_gravity: Value  # gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference
+    vesicle_shape: Literal['ellipse', 'biconcave', 'file', 'none'] | None  # initial shape; biconcave: the red cell's outline
+    vesicle_count: Value  # number of vesicles; a file has its own number of curves, a packing the number that it takes
+    vesicle_semi_axes: Value  # semi-axes of the ellipse, two for all, or two a vesicle or kind (length)
+    vesicle_area: Value  # area, with -vesicle_reduced_area; one for all, or one a vesicle or kind (length^2)
+    vesicle_reduced_area: Value  # V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x; biconcave: 0.35 to 0.9, 0.65 when not given
+    vesicle_center: Value  # x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)
+    vesicle_angle: Value  # counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)
+    vesicle_file: Value  # closed curves: x y a line, an empty line between curves, for -vesicle_shape file
+    vesicle_mixture: Value  # fraction of the vesicles that are of each kind, adding up to 1; lists of area, reduced area, semi-axes and bending then have an entry for each kind
+    vesicle_packing: Value  # area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center
+    vesicle_packing_type: Literal['random', 'lattice'] | None  # random places and angles, or a rectangular lattice with -vesicle_angle
+    vesicle_packing_seed: Value  # of the random packing: the same seed gives the same vesicles
+    vesicle_packing_gap: Value  # least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)
+    vesicle_bending: Value  # c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out (length^5/time^2)
+    vesicle_density_difference: Value  # density inside less density outside, over that outside; one for all, or one a vesicle or kind
+    vesicle_viscosity_ratio: Value  # coupled: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady
+    vesicle_spacing: Value  # marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (ib6 1.75, cbs54 1.5)
+    vesicle_markers: Value  # number of markers of each vesicle, instead of the spacing; 0 takes the spacing
+    vesicle_allow_close_markers: Literal['true', 'false'] | None  # accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (ib6 1.25, cbs54 1)
+    obstacle_shape: Literal['none', 'posts', 'couette', 'constriction', 'file'] | None  # solid bodies in the fluid: circles, two circles with fluid between them, two bumps on the walls y_min and y_max that face one another, curves of a file
+    obstacle_radius: Value  # of posts: one for all or one each; of couette: the inner and the outer one (length)
+    obstacle_center: Value  # x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)
+    obstacle_lattice: Value  # posts: columns and rows that fill the box, in place of -obstacle_center; 0,0: none
+    obstacle_shift: Value  # lattice of posts: how far a row stands along x from the one below it, over the distance of columns
+    obstacle_throat: Value  # constriction: its narrowest width over that of the channel
+    obstacle_length: Value  # constriction: its length along x, a whole wave of a cosine; 0: as long as the channel is wide (length)
+    obstacle_velocity: Value  # u_x,u_y of the fluid at the obstacles' surfaces, one for all or one each; the curves stay where they are without -obstacle_moving (length/time)
+    obstacle_rotation: Value  # rate at which the surfaces turn about their curves' middles, counter-clockwise, one for all or one each (1/time)
+    obstacle_frequency: Value  # the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)
+    obstacle_moving: Literal['true', 'false'] | None  # closed obstacles move and turn as solid bodies with the velocities given (of a file: its lines # velocity and # rotation); false: they rest, and only their surfaces move
+    obstacle_file: Value  # curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own
+    obstacle_spacing: Value  # spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it
+    obstacle_factor: Literal['auto', 'dense', 'modes'] | None  # preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways
+    delta_type: Literal['ib6', 'cbs54'] | None  # kernel between grid and markers; split, penalty: ib6
+    scheme_type: Literal['split', 'penalty', 'coupled'] | None  # time-stepping scheme: the paper's, stiff springs, unsplit
+    scheme_order: Value  # order in time: backward Euler, BDF2, or BDF3 wherever it predicts better; split and penalty are of order 1
+    scheme_auto: Value  # relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off
+    penalty_stiffness: Value  # penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears
+    scheme_length_target: Literal['true', 'false'] | None  # coupled: each step aims at edges of their first length
+    coupling_near_field: Literal['exact', 'none'] | None  # coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not
+    coupling_box_part: Literal['true', 'false'] | None  # with the exact near field: the grid's error of second order in what walls and periodic images do is taken off; default false from 256 cells across on
+    contact_repulsion: Value  # coupled: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d (length^2/time^2); 0: none
+    contact_repulsion_range: Value  # D, up to which it acts (length); 0: 1.5 times the longest mean edge
+    contact_adhesion: Value  # with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none
+    contact_adhesion_range: Value  # B, width of the band from D to D + B in which they are drawn together (length); 0: D
+    membrane_derivative: Literal['fd', 'bending', 'spectral'] | None  # derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges; split, penalty: fd
+    scheme_startup: Literal['euler', 'graded'] | None  # first step of orders 2 and 3: backward Euler, or five growing parts of a step
+    time_step: Value  # dt (time)
+    time_end: Value  # end time, reached exactly: the last steps are shortened (time)
+    time_adapt: Literal['none', 'error'] | None  # step size: fixed, or from an error estimate (coupled of order 2 or 3)
+    time_adapt_tol: Value  # error estimate accepted a step, in units of R0
+    time_adapt_max_move: Value  # cells that a marker may move in a step relative to its vesicle; 0 no limit
+    time_adapt_max_step: Value  # largest step that -time_adapt error takes; 0 no limit; not given: 1/(rate (1 + 0.03 chi)) in a flow, nu R0^3/c_b without one (time)
+    time_cfl_limit: Value  # convective: largest dt max(|u| + |v|)/h; -time_adapt error stays below it, a fixed step above it stops the run
+    time_steady_tol: Value  # stop when normal_speed, max |u.n| on a membrane, falls below it; 0 never (length/time)
+    helmholtz_type: Literal['fftw_tridiagonal', 'fftw', 'hypre'] | None  # fast solver of the velocity Helmholtz problems
+    poisson_type: Literal['fftw_tridiagonal', 'fftw', 'hypre'] | None  # fast solver of the pressure Poisson problems
+    output_dir: Value  # folder of every output file
+    output_overwrite: Literal['true', 'false'] | None  # replace the results that -output_dir holds already
+    output_every: Value  # time between saved fields; not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)
+    output_precision: Literal['double', 'single'] | None  # of saved velocity and pressure; single takes half the room
+    checkpoint_every: Value  # steps between checkpoints; 0 writes one at the end only
+    checkpoint_keep: Value  # checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on
+    restart: Value  # go on from this checkpoint, in its folder or in a new -output_dir
+    time_wall_limit: Value  # stop with a checkpoint before this much wall time has passed; 0 never (seconds)
+    limit_edge_ratio: Value  # stop when a vesicle's longest edge is more than this many times its shortest; 0 no limit
+    limit_area_error: Value  # stop when a vesicle's area is off by more than this part of its first; 0 no limit
+    limit_length_error: Value  # stop when a vesicle's length is off by more than this part of its first; 0 no limit
+    limit_gap_loss: Value  # stop when a step takes more than this part of a film between vesicles, or vesicle and wall, that is then thinner than half an edge (a cell without near field); -time_adapt error takes a smaller step; 0 no limit
+    limit_crossing: Literal['true', 'false'] | None  # stop when membranes cross, one another or themselves
+    view: Literal['true', 'false'] | None  # print the model in force and the solvers
+    allow_unused_options: Literal['true', 'false'] | None  # go on when an option is misspelt or unused
+    coupled_ksp_rtol: Value  # PETSc's, of the solver
+    coupled_ksp_max_it: Value  # PETSc's, of the solver
+    coupled_ksp_monitor: Value  # PETSc's, of the solver
+    tension_ksp_rtol: Value  # PETSc's, of the solver
+    tension_ksp_max_it: Value  # PETSc's, of the solver
+    tension_ksp_monitor: Value  # PETSc's, of the solver
+    bending_ksp_rtol: Value  # PETSc's, of the solver
+    bending_ksp_max_it: Value  # PETSc's, of the solver
+    bending_ksp_monitor: Value  # PETSc's, of the solver
