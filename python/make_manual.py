@@ -12,9 +12,9 @@ from pathlib import Path
 
 from check_options import Option, described
 
-TOOLS = "run plot movie report compare sweep"
+TOOLS = "run plot movie watch report compare sweep numbers scenes"
 WORDS = "-help -version -options_file -log_view"
-FILES = "-options_file -restart -vesicle_file"
+FILES = "-options_file -restart -vesicle_file -obstacle_file"
 FOLDERS = "-output_dir"
 
 
@@ -61,7 +61,7 @@ def completion(options: list[Option]) -> str:
             '  local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}"',
             '  case "$before" in',
             f'    {"|".join(FILES.split())}) COMPREPLY=($(compgen -f -- "$word")); return ;;',
-            f'    {FOLDERS}|plot|movie|report|compare|sweep) COMPREPLY=($(compgen -d -- "$word")); return ;;',
+            f'    {FOLDERS}|plot|movie|watch|report|compare|sweep) COMPREPLY=($(compgen -d -- "$word")); return ;;',
             '    run) COMPREPLY=($(compgen -f -- "$word")); return ;;',
             "    -help) COMPREPLY=($(compgen -W 'options all' -- \"$word\")); return ;;",
             *choices,

@@ -14,10 +14,12 @@ _HOME = {
     "compare": "views.compare:compare",
     "load": "dataset:load",
     "movie": "views.movie:movie",
+    "numbers": "laboratory:numbers",
     "plot": "views.plot:plot_run",
     "quantities": "quantities:",
     "report": "views.report:report",
     "sweep": "sweeps:sweep",
+    "watch": "views.watch:watch",
 }
 """The module of each name and the name there; a module's without one."""
 __all__ = ["Error", *_HOME]

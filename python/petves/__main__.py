@@ -1,19 +1,19 @@
-"""Command line: ``petves`` of pip, ``python3 -m petves``: ``run|plot|movie|report|compare|sweep ...``."""
+"""Command line: ``petves`` of pip, ``python3 -m petves``: ``run|plot|movie|watch|report|compare|sweep|numbers|scenes ...``."""
 
 from __future__ import annotations
 
 import argparse
 import io
 import os
-import re
 import sys
 from importlib import import_module
-from typing import Any, Callable
+from typing import Any
 
 from petves.errors import Error
-from petves.program import become
+from petves.program import become, scene_file
 
-HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "report", "compare")} | {"sweep": "petves.sweeps"}
+HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "watch", "report", "compare")}
+HOME |= {"sweep": "petves.sweeps", "numbers": "petves.laboratory", "scenes": "petves.program"}
 """The module of each command, imported when the command is run."""
 
 
@@ -26,6 +26,8 @@ def parser() -> argparse.ArgumentParser:
     commands.add_parser("run", help="run a scene: run SCENE.opts -option value ...; run -help, run -help options")
     _add_pictures(commands)
     _add_tables(commands)
+    _add_numbers(commands)
+    commands.add_parser("scenes", help="list the scenes that run takes by name: petves run shear")
     return top
 
 
@@ -44,21 +46,6 @@ def _add_look(command: argparse.ArgumentParser, *names: str) -> None:
         command.add_argument(f"--{name}", **known[name])
 
 
-def _numbers(count: int) -> Callable[[str], list[float]]:
-    """Return what reads so many numbers with commas between them."""
-
-    def read(text: str) -> list[float]:
-        values = [float(word) for word in text.split(",")]
-        if len(values) != count:
-            raise argparse.ArgumentTypeError(
-                f"{text}: {len(values)} numbers; allowed: {count} with commas between them"
-            )
-        return values
-
-    read.__name__ = f"{count} numbers"
-    return read
-
-
 def _add_pictures(commands: argparse._SubParsersAction) -> None:
     plot = commands.add_parser("plot", help="draw a run's folder into pictures in that folder")
     plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
@@ -67,10 +54,9 @@ def _add_pictures(commands: argparse._SubParsersAction) -> None:
     )
     plot.add_argument("--column", nargs="+", default=[], metavar="NAME", help="columns of series.csv over time")
     plot.add_argument("--field", nargs="+", default=[], metavar="NAME", help="membranes over fields: vorticity, ...")
-    plot.add_argument(
-        "--point", nargs="+", default=[], type=_numbers(2), metavar="X,Y", help="u, v, p at points over time"
-    )
-    plot.add_argument("--line", type=_numbers(4), metavar="X,Y,X,Y", help="u, v, p along a line")
+    points = dict(nargs=2, type=float, action="append", default=[], metavar=("X", "Y"))
+    plot.add_argument("--point", **points, help="u, v, p at a point over time; again for each further point")
+    plot.add_argument("--line", nargs=4, type=float, metavar=("X", "Y", "X", "Y"), help="u, v, p along a line")
     plot.add_argument("--walls", action="store_true", help="the shear stress along the walls")
     _add_look(plot, "format", "dpi", "width", "cmap", "follow")
     film = commands.add_parser("movie", help="film the membrane over the flow: mp4 (with ffmpeg) or gif")
@@ -86,6 +72,9 @@ def _add_pictures(commands: argparse._SubParsersAction) -> None:
     film.add_argument("--width", type=int, default=1080, metavar="PIXELS", help="width of the film (1080)")
     film.add_argument("--streamlines", action="store_true", help="streamlines too")
     _add_look(film, "cmap", "follow")
+    live = commands.add_parser("watch", help="draw a run that goes on into watch.html, anew until it ends")
+    live.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    live.add_argument("--every", type=float, default=10, metavar="SECONDS", help="between two drawings (10)")
     page = commands.add_parser("report", help="write one HTML file about a run that opens anywhere, offline")
     page.add_argument("folder", metavar="DIR", help="the run's -output_dir")
     page.add_argument("--output", metavar="FILE", help="the file (report.html in DIR)")
@@ -95,7 +84,7 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     both = commands.add_parser("compare", help="options, series and membranes of two runs, side by side")
     both.add_argument("first", metavar="RUN", help="a run's -output_dir")
     both.add_argument("second", metavar="RUN", help="another's")
-    both.add_argument("--output", metavar="FILE", default="compare.png", help="the picture (compare.png)")
+    both.add_argument("--output", metavar="FILE", help="the picture (compare.png in the first)")
     grid = commands.add_parser("sweep", help="run a grid of options, several at a time, into one table")
     grid.add_argument("folder", metavar="DIR", help="where the runs and sweep.csv go; a second call goes on")
     grid.add_argument("--options-file", metavar="FILE", help="options that all runs share")
@@ -111,6 +100,21 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     grid.add_argument("--ranks", type=int, default=1, help="MPI ranks of each run (1)")
 
 
+def _add_numbers(commands: argparse._SubParsersAction) -> None:
+    cell = commands.add_parser("numbers", help="options of a scene, and chi and Re, from numbers in SI units")
+    for name, needed, what in (
+        ("radius", True, "perimeter/(2 pi), m"),
+        ("bending", True, "bending modulus, J"),
+        ("viscosity", True, "dynamic viscosity outside, Pa s"),
+        ("inside", False, "dynamic viscosity inside, Pa s (the same)"),
+        ("rate", False, "rate of shear or extension, 1/s"),
+        ("reduced-area", False, "area/(pi radius^2) (0.7)"),
+        ("density", False, "of both fluids, kg/m^3 (1000)"),
+    ):
+        cell.add_argument(f"--{name}", type=float, required=needed, metavar="X", help=what)
+    cell.add_argument("--flow", choices=("shear", "extension"), help="shear")
+
+
 def _run(command: str, words: dict[str, Any]) -> list[object]:
     """Run one command with its arguments; return the lines to print."""
     module = import_module(HOME[command])
@@ -122,6 +126,10 @@ def _run(command: str, words: dict[str, Any]) -> list[object]:
         for name in ("column", "field", "point"):
             words[f"{name}s"] = words.pop(name)
         return module.plot_run(**words)
+    if command == "scenes":
+        return module.scenes()
+    if command == "numbers":
+        return module.lines(**{name: value for name, value in words.items() if value is not None})
     if command == "compare":
         lines, picture = module.compare(**words)
         return [*lines, picture]
@@ -156,10 +164,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else arguments
     try:
         if _for_program(given):
-            return become(given)
-        given = [
-            re.sub(r"^(?=-[\d.]+[^,]*,)", " ", word) for word in given
-        ]  # -1,0 are numbers: no option begins with a blank
+            return become([*given[:1], *map(scene_file, given[1:2]), *given[2:]])
         words = vars(parser().parse_args(given))
         command = words.pop("command")
         if isinstance(sys.stdout, io.TextIOWrapper):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -69,6 +70,25 @@ def command() -> list[str]:
     """Return the words that start petves: the program, or this Python with the library that pip has brought."""
     found, _ = _find()
     return [str(found)] if found else [sys.executable, "-m", "petves", "run"]
+
+
+def scene_files() -> dict[str, Path]:
+    """Return the scenes that come with petves by name: of the repository, or where make install has put them."""
+    prefixes = [*PACKAGE.parents[1:6], *_of_command(), Path("/usr/local")]
+    folders = [folder for prefix in prefixes for folder in (prefix / "runs", prefix / "share" / "petves" / "runs")]
+    folder = next((folder for folder in folders if (folder / "default.opts").is_file()), PACKAGE)
+    return {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.opts"))}
+
+
+def scene_file(word: str) -> str:
+    """Return the file of a scene by its name; a word that is a file, an option or no name as it is."""
+    return str(scene_files().get(word, word)) if not (word.startswith("-") or os.path.exists(word)) else word
+
+
+def scenes() -> list[str]:
+    """Return a line for each scene that comes with petves: its name and how its file begins."""
+    first = {name: path.read_text().partition("# ")[2].partition("\n")[0] for name, path in scene_files().items()}
+    return [f"{name:<23} {re.split(r'[:.;] ', text)[0]}" for name, text in first.items()]
 
 
 def _environment() -> dict[str, str]:

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
 Callback = Callable[["Simulation"], Any]
 
-GO_ON, STOP, FAILED = range(3)
-"""What a callback wants; the largest of all ranks' wishes counts."""
+GO_ON, STOP, FAILED = range(3)  # what a callback wants; the largest of all ranks' wishes counts
 
 _alive: dict[int, weakref.ref] = {}  # in the order of creation, which is the same on every rank
 
@@ -238,12 +237,7 @@ class Simulation(State):
     # -- stepping ------------------------------------------------------------------------------------------------------
 
     def step(self, steps: int = 1) -> None:
-        """Take time steps, with their rows of series.csv and the files that are due.
-
-        Parameters
-        ----------
-        steps : int
-            How many.
+        """Take so many time `steps`, with their rows of series.csv and the files that are due.
 
         Raises
         ------
@@ -257,7 +251,13 @@ class Simulation(State):
             self._stop_on(failure)
             self._record()
 
-    def run(self, until: float | None = None, callback: Callback | None = None, progress: bool | None = None) -> str:
+    def run(
+        self,
+        until: float | None = None,
+        callback: Callback | None = None,
+        progress: bool | None = None,
+        live: bool = False,
+    ) -> str:
         """Step to a time, the steady state of ``time_steady_tol``, or where the callback says so.
 
         Parameters
@@ -272,6 +272,8 @@ class Simulation(State):
             through where it was raised, the other ranks raise `Error`.
         progress : bool, optional
             Show a progress bar; when left out, if standard error is a terminal.
+        live : bool
+            Draw membranes, bending energy and inclination in a notebook, anew every second.
 
         Returns
         -------
@@ -285,7 +287,12 @@ class Simulation(State):
         """
         end = float(self._in_force["time_end"]) if until is None else until
         stepped, failure, word = ctypes.c_int(), ctypes.c_char_p(), ctypes.c_char_p()
-        with progress_bar(end, self.time, progress if self._comm.getRank() == 0 else False) as bar:
+        first = self._comm.getRank() == 0
+        if live and first:
+            from petves.views.live import Live
+
+            callback = Live(self, callback)
+        with progress_bar(end, self.time, progress if first else False) as bar:
             handle = self._open()
             advance = ("SimulationAdvance", (handle, end, ctypes.byref(stepped), ctypes.byref(failure)))
             gather = ("SimulationGatherMarkers", (handle, *self._found_by))
@@ -345,8 +352,7 @@ class Simulation(State):
         self._call("SimulationView", self._open(), PETSc.Viewer.STDOUT(self._comm).handle)
 
     def close(self) -> None:
-        """Write the end state and summary.json if that has not been done, free everything. Calls after the first do
-        nothing."""
+        """Write the end state and summary.json if that has not been done, free everything. Later calls do nothing."""
         if not self._handle:
             return
         try:

@@ -113,7 +113,8 @@ def test_tools_are_python_s(here):
     assert done.returncode == 0 and done.stdout.startswith(f"usage: petves {tools[0]}"), done.stderr
     words, paths = [sys.executable, "-m", "petves", "--help"], os.environ | {"PYTHONPATH": str(ROOT / "python")}
     top = subprocess.run(words, env=paths, capture_output=True, text=True, check=True).stdout
-    assert re.search(r"\{([\w,]+)\}", top)[1].split(",") == ["run", *tools]
+    own = {"watch", "numbers", "scenes"} - set(tools)  # of python3 -m petves alone
+    assert [name for name in re.search(r"\{([\w,]+)\}", top)[1].split(",") if name not in own] == ["run", *tools]
 
 
 def test_a_tool_needs_no_python_path(here):

@@ -37,7 +37,7 @@ def test_names_are_offered_before_they_are_imported():
     names = {name for name in ast.literal_eval(done.stdout) if not name.startswith("__")}
     stub = ast.parse((ROOT / "python" / "petves" / "__init__.pyi").read_text())
     imported = {node.names[0].asname for node in stub.body if isinstance(node, (ast.Import, ast.ImportFrom))}
-    views = {"plot", "movie", "report", "compare", "sweep", "quantities"}
+    views = {"plot", "movie", "report", "compare", "sweep", "quantities", "watch", "numbers"}
     assert names == imported == {"Error", "Run", "RunError", "Simulation", "load"} | views
     home = "petves.views.plot petves.views.movie petves.views.report petves.views.compare petves.sweeps".split()
     code = "import petves, petves.sweeps\nprint(*(getattr(petves, x).__module__ for x in 'plot movie report compare sweep'.split()))"
@@ -136,7 +136,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}
         words = [tmp_path / "bin" / "petves", "compare", tmp_path / "s" / "time_end=0", tmp_path / "s" / "time_end=0"]
         done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
-        assert done.returncode == 0 and (tmp_path / "compare.png").is_file(), (
+        assert done.returncode == 0 and (tmp_path / "s" / "time_end=0" / "compare.png").is_file(), (
             "and the program finds them\n" + done.stderr
         )
         share = tmp_path / "share"

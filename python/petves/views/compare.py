@@ -15,15 +15,15 @@ COUNTERS = ("step", "wall", "nsolve", "tension_its", "bending_its", "coupled_its
 SAME = 1e-9  # times closer than this part of a run are the same
 
 
-def compare(first: str | Path, second: str | Path, output: str | Path = "compare.png") -> tuple[list[str], Path]:
+def compare(first: str | Path, second: str | Path, output: str | Path | None = None) -> tuple[list[str], Path]:
     """Compare two runs: their options, their series and their membranes.
 
     Parameters
     ----------
     first, second : str or Path
         The runs' folders.
-    output : str or Path
-        The picture.
+    output : str or Path, optional
+        The picture; compare.png in the first folder when left out.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def compare(first: str | Path, second: str | Path, output: str | Path = "compare
     """
     runs = Run.read(first), Run.read(second)
     lines = _options(*runs) + _columns(*runs) + [_markers(*runs)]
-    return lines, _draw(runs, Path(output))
+    return lines, _draw(runs, Path(output) if output else runs[0].folder / "compare.png")
 
 
 def _options(a: Run, b: Run) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -142,6 +143,12 @@ def add_bar(place: Axes, mappable: ScalarMappable, label: str) -> None:
     inches = place.get_window_extent().width / place.figure.dpi
     ticks = MaxNLocator(max(2, int(inches / TICK)), min_n_ticks=2)
     place.figure.colorbar(mappable, cax=place, label=label, ticks=ticks, orientation="horizontal")
+
+
+def filled(name: str, parts: dict[str, str]) -> str:
+    """Return a page of this folder with the parts in their places, __NAME__ each; those in a part stay as they are."""
+    page = (Path(__file__).parent / name).read_text(encoding="utf-8")
+    return re.sub(f"__({'|'.join(parts)})__", lambda found: parts[found[1]], page)
 
 
 def save_figure(figure: Figure, path: Path, look: Look = PLAIN) -> Path:

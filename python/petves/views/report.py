@@ -15,7 +15,7 @@ import numpy as np
 
 from petves.files import read_file, shown, writing
 from petves.run import Run
-from petves.views.figures import MANY
+from petves.views.figures import MANY, filled
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.views.window import Window
 from petves.views.words import key_numbers, scene_in_words
@@ -65,11 +65,9 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "OPTIONS": _safe("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
     }
-    page = (Path(__file__).parent / "report.html").read_text(encoding="utf-8")
-    page = re.sub(f"__({'|'.join(parts)})__", lambda found: parts[found[1]], page)  # once: a folder may be so called
     path = Path(output) if output else run.folder / "report.html"
     with writing(path) as fresh:
-        fresh.write_text(page, encoding="utf-8")
+        fresh.write_text(filled("report.html", parts), encoding="utf-8")
     return path
 
 
