@@ -1,7 +1,6 @@
 /* Questions about a simulation, and calls from programs that handle errors themselves (Python). */
 #include "app/simulation.h"
 #include "scheme/fields.h"
-#include "output/cells.h"
 #include <locale.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -26,12 +25,15 @@ PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec 
 
 PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, const PetscReal **velocity,
                                        const PetscReal **tension) {
-  Gathered *now = &s->output->now;
+  const PetscReal **const wanted[] = {markers, velocity, tension}; /* STATE_MARKERS, STATE_VELOCITY, STATE_TENSION */
   PetscFunctionBeginUser;
-  PetscCall(GatherState(&s->scheme->state, now));
-  if (markers) *markers = now->part[GATHERED_MARKERS].values;
-  if (velocity) *velocity = now->part[GATHERED_VELOCITY].values;
-  if (tension) *tension = now->part[GATHERED_TENSION].values;
+  for (int k = 0; k < 3; k++) {
+    const StatePart part = StatePartOf(s->scheme, &s->scheme->state, (StatePartName)k);
+    if (!wanted[k]) continue;
+    if (!s->gathered[k]) PetscCall(PetscMalloc1(part.n * part.each, &s->gathered[k]));
+    PetscCall(StateGather(&part, s->gathered[k]));
+    *wanted[k] = s->gathered[k];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,5 @@
 /* A whole run: build everything from the options, step, write. */
 #include "app/simulation.h"
-#include "base/agree.h"
 #include "baselines/baselines.h"
 #include "options/typed.h"
 #include <stdlib.h>
@@ -166,6 +165,7 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   *simulation = NULL;                /* the simulation is destroyed also when a file cannot be closed */
   error = OutputDestroy(&s->output); /* reported when all else is freed */
+  for (int k = 0; k < 3; k++) PetscCall(PetscFree(s->gathered[k]));
   PetscCall(SchemeDestroy(&s->scheme));
   PetscCall(CouplingDestroy(&s->coupling));
   PetscCall(MembraneDestroy(&s->membrane));
@@ -186,26 +186,14 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode IsSteady(Simulation s, PetscBool *steady) {
-  const State *q = &s->scheme->state;
-  const Layout l = s->layout;
+/* By the last row of the record, which every rank has. */
+static PetscBool IsSteady(Simulation s) {
+  const Record *r = &s->output->record;
   const PetscReal tolerance = s->scene->time.steady_tol;
-  const PetscScalar *X, *U;
-  PetscBool moves = PETSC_FALSE;
-  PetscFunctionBeginUser;
-  *steady = PETSC_FALSE;
-  if (tolerance <= 0 || !l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(q->X, &X));
-  PetscCall(VecGetArrayRead(q->U, &U));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = 2 * LayoutOffset(l, v);
-    if (!(MembraneNormalSpeed(s->membrane, v, X + at, U + at) < tolerance)) moves = PETSC_TRUE;
-  }
-  PetscCall(VecRestoreArrayRead(q->U, &U));
-  PetscCall(VecRestoreArrayRead(q->X, &X));
-  PetscCall(AgreeFlag(l->comm, moves, &moves));
-  *steady = moves ? PETSC_FALSE : PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscBool steady = tolerance > 0 && r->vesicles ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt v = 0; v < r->vesicles && steady; v++)
+    steady = r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED] < tolerance ? PETSC_TRUE : PETSC_FALSE;
+  return steady;
 }
 
 /* One step, of at most `most`, its row of series.csv and the files that are due. */
@@ -219,7 +207,7 @@ static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failur
   *failure = *report->failure ? report->failure : NULL;
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputStep(s->output));
-  PetscCall(IsSteady(s, &s->steady));
+  s->steady = IsSteady(s);
   PetscCall(PetscTime(&end));
   s->longest_step = PetscMax(s->longest_step, end - start);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -241,14 +229,6 @@ PetscErrorCode SimulationStep(Simulation s, const char **failure) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Stop(Simulation s, const char why[]) {
-  PetscFunctionBeginUser;
-  s->reason = "stopped";
-  PetscCall(
-      PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", s->scheme->state.step, why));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
   const PetscReal t = s->scheme->state.t;
   const char *why = NULL;
@@ -260,11 +240,14 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
   s->reason = s->steady ? "steady" : "finished";
   if (s->steady || StepFinished(&s->scheme->policy, t, until)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit, reserve + 1.5 * s->longest_step, &why));
-  if (!why) {
+  if (why) {
+    s->reason = "stopped";
+    PetscCall(
+        PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", s->scheme->state.step, why));
+  } else {
     PetscCall(TakeStep(s, until - t, failure));
     *stepped = PETSC_TRUE;
-  } else
-    PetscCall(Stop(s, why));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

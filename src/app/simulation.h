@@ -12,6 +12,7 @@ struct _p_Simulation {
   Coupling coupling;
   Scheme scheme;
   Output output;
+  PetscReal *gathered[3]; /* SimulationGatherMarkers: markers, velocity, tension; NULL before */
   PetscBool begun;        /* the initial state has been written */
   PetscBool steady;       /* after the last step */
   PetscReal longest_step; /* wall seconds, with its output */

@@ -178,10 +178,6 @@ PetscErrorCode PetvesSetQuiet(PetscBool quiet) {
   return PETSC_SUCCESS;
 }
 
-PetscBool PetvesIsQuiet(void) {
-  return base.quiet;
-}
-
 PetscErrorCode PetvesSay(MPI_Comm comm, const char format[], ...) {
   char text[PETVES_MAX_MESSAGE];
   va_list arguments;

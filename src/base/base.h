@@ -28,9 +28,8 @@ PETSC_EXTERN PetscErrorCode PetvesErrorHandler(MPI_Comm, int, const char *, cons
                                                PetscErrorType, const char *, void *);
 
 /* PetvesSay - PetscPrintf of progress, reasons of -scheme_auto and warnings; prints nothing after PetvesSetQuiet(TRUE).
-   Collective. PetvesIsQuiet - whether PetvesSay prints nothing. Not collective. */
+   Collective. */
 PETSC_EXTERN PetscErrorCode PetvesSay(MPI_Comm comm, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
-PETSC_EXTERN PetscBool PetvesIsQuiet(void);
 
 /* PetvesSetupErrors - while on, every error counts as a user's mistake: PETSc reports a solver option with a bad value
    (-tension_ksp_type foo) with codes of its own. Not collective. */

@@ -4,17 +4,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-void AppendedAddSeries(AppendedKind *kind, const char path[], PetscInt rows, PetscInt columns, PetscBool single) {
-  const PetscInt k = kind->series++;
-  (void)snprintf(kind->path[k], APPENDED_NAME, "%s", path);
-  kind->dims[k][0] = rows;
-  kind->dims[k][1] = columns;
-  kind->single[k] = single;
-}
-
 /* Numbers in an entry of series k. */
 static PetscInt EntrySize(const AppendedKind *kind, PetscInt k) {
-  return PetscMax(1, kind->dims[k][0]) * kind->dims[k][1];
+  return PetscMax(1, kind->series[k].rows) * kind->series[k].columns;
 }
 
 /* Path of the file with an ending behind its name. */
@@ -25,13 +17,13 @@ static void AppendedPath(const AppendedFile *a, const char ending[], char path[P
 /* Write the line of an entry. */
 static void IndexPrint(AppendedFile *a, PetscInt entry, PetscReal t) {
   fprintf(a->index, "%d %.17g", (int)entry, (double)t);
-  for (PetscInt k = 0; k < a->kind.series; k++)
-    fprintf(a->index, " %llu", H5EntryPlace(&a->file, a->kind.path[k], entry));
+  for (PetscInt k = 0; k < a->kind.n; k++)
+    fprintf(a->index, " %llu", H5EntryPlace(&a->file, a->kind.series[k].path, entry));
   fprintf(a->index, "\n");
 }
 
-/* Make the index of the first `count` entries, to which further lines are added. */
-static PetscErrorCode IndexOpen(AppendedFile *a, PetscInt count) {
+/* Make the index of the entries that there are, to which further lines are added. */
+static PetscErrorCode IndexOpen(AppendedFile *a) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
   PetscBool done = PETSC_TRUE;
   PetscFunctionBeginUser;
@@ -39,7 +31,7 @@ static PetscErrorCode IndexOpen(AppendedFile *a, PetscInt count) {
   AppendedPath(a, ".index.tmp", temporary);
   if (!a->folder->rank) {
     a->index = FileNew(temporary);
-    for (PetscInt t = 0; t < count && a->index; t++) IndexPrint(a, t, a->time[t]);
+    for (PetscInt t = 0; t < a->count && a->index; t++) IndexPrint(a, t, a->time[t]);
     done = a->index && !fflush(a->index) && !ferror(a->index) ? PETSC_TRUE : PETSC_FALSE;
     if (done) done = a->file.failed ? !unlink(temporary) : !rename(temporary, path);
   }
@@ -59,32 +51,14 @@ static PetscErrorCode AppendedCheck(AppendedFile *a) {
 /* A file without entries. */
 static PetscErrorCode AppendedMake(const AppendedKind *kind, MPI_Comm comm, const char path[], H5File *f) {
   PetscFunctionBeginUser;
-  PetscCall(H5FileCreate(comm, path, f));
+  PetscCall(H5FileOpen(comm, path, H5_NEW, f));
   PetscCall(kind->describe(kind->scheme, f));
   H5CreateSeries(f, "/time", PETSC_FALSE, 0, NULL);
-  for (PetscInt k = 0; k < kind->series; k++)
-    H5CreateSeries(f, kind->path[k], kind->single[k], !kind->dims[k][0] ? 0 : (kind->dims[k][1] > 1 ? 2 : 1),
-                   kind->dims[k]);
+  for (PetscInt k = 0; k < kind->n; k++) {
+    const AppendedSeries *s = &kind->series[k];
+    H5CreateSeries(f, s->path, s->single, !s->rows ? 0 : (s->columns > 1 ? 2 : 1), &s->rows);
+  }
   H5FileFlush(f);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static void AppendedBegin(AppendedFile *a, Folder *folder, const AppendedKind *kind) {
-  a->folder = folder;
-  a->kind = *kind;
-  (void)PetscSNPrintf(a->index_name, sizeof(a->index_name), "%s.index", kind->name);
-}
-
-PetscErrorCode AppendedCreate(AppendedFile *a, Folder *folder, const AppendedKind *kind) {
-  char path[PETSC_MAX_PATH_LEN];
-  PetscFunctionBeginUser;
-  AppendedBegin(a, folder, kind);
-  FolderPath(folder, kind->name, path);
-  PetscCall(AppendedMake(kind, folder->comm, path, &a->file));
-  a->open = PETSC_TRUE;
-  PetscCall(AppendedCheck(a));
-  FolderWatch(folder, kind->name);
-  PetscCall(IndexOpen(a, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,18 +97,18 @@ static PetscErrorCode EntriesCopy(const AppendedKind *kind, PetscInt most, FILE 
   PetscInt largest = 0, entry;
   unsigned long long place[APPENDED_SERIES];
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < kind->series; k++) largest = PetscMax(largest, EntrySize(kind, k));
+  for (PetscInt k = 0; k < kind->n; k++) largest = PetscMax(largest, EntrySize(kind, k));
   PetscCall(PetscMalloc1(largest, &values));
   *copied = 0;
-  while (IndexRead(index, kind->series, &entry, &t, place) && entry <= *copied) {
+  while (IndexRead(index, kind->n, &entry, &t, place) && entry <= *copied) {
     PetscBool good = PETSC_TRUE;
     if (entry >= most) continue;
-    for (PetscInt k = 0; good && k < kind->series; k++) {
-      good = EntryRead(old, EntrySize(kind, k), kind->single[k], (off_t)place[k], values);
-      if (good) H5WriteArray(f, kind->path[k], entry, EntrySize(kind, k), values);
+    for (PetscInt k = 0; good && k < kind->n; k++) {
+      good = EntryRead(old, EntrySize(kind, k), kind->series[k].single, (off_t)place[k], values);
+      if (good) H5Transfer(f, PETSC_TRUE, kind->series[k].path, entry, EntrySize(kind, k), values);
     }
     if (!good) break;
-    H5WriteArray(f, "/time", entry, 1, &t);
+    H5Transfer(f, PETSC_TRUE, "/time", entry, 1, &t);
     *copied = entry + 1;
   }
   PetscCall(PetscFree(values));
@@ -147,9 +121,9 @@ static PetscBool AppendedTakeNew(const char fresh[], const char index[], const c
   return !access(fresh, F_OK) && (!unlink(index) || errno == ENOENT) && !rename(fresh, path) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Make the file anew where there is an index. If fewer than `most` entries can be read, and `most` is not
-   PETSC_MAX_INT, the file stays as it is. */
-static PetscErrorCode AppendedRepair(AppendedFile *a, PetscInt most) {
+/* Make the file anew of its first `count` entries where there is an index. If fewer can be read the file stays as it
+   is. */
+static PetscErrorCode AppendedRepair(AppendedFile *a, PetscInt count) {
   char path[PETSC_MAX_PATH_LEN], index[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN], fresh[PETSC_MAX_PATH_LEN];
   FILE *lines = NULL;
   H5File f;
@@ -169,9 +143,9 @@ static PetscErrorCode AppendedRepair(AppendedFile *a, PetscInt most) {
   PetscCallMPI(MPI_Bcast(&here, 1, MPI_INT, 0, a->folder->comm));
   if (here) {
     PetscCall(AppendedMake(&a->kind, a->folder->comm, part, &f));
-    if (!a->folder->rank) PetscCall(EntriesCopy(&a->kind, most, lines, old, &f, &copied));
+    if (!a->folder->rank) PetscCall(EntriesCopy(&a->kind, count, lines, old, &f, &copied));
     H5FileClose(&f);
-    if (!a->folder->rank && (copied == most || most == PETSC_MAX_INT) && !f.failed &&
+    if (!a->folder->rank && copied == count && !f.failed &&
         (FileSync(part) || rename(part, fresh) || !AppendedTakeNew(fresh, index, path)))
       f.failed = PETSC_TRUE;
     if (!a->folder->rank) (void)unlink(part);
@@ -182,22 +156,6 @@ static PetscErrorCode AppendedRepair(AppendedFile *a, PetscInt most) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AppendedOpen(AppendedFile *a, Folder *folder, const AppendedKind *kind, PetscInt most,
-                            PetscInt *length) {
-  char path[PETSC_MAX_PATH_LEN];
-  PetscBool failed;
-  PetscFunctionBeginUser;
-  AppendedBegin(a, folder, kind);
-  PetscCall(AppendedRepair(a, most));
-  FolderPath(folder, kind->name, path);
-  PetscCall(H5FileOpen(folder->comm, path, PETSC_TRUE, &a->file));
-  a->open = PETSC_TRUE;
-  PetscCall(H5SeriesLength(&a->file, "/time", length));
-  PetscCall(H5FileFailed(&a->file, &failed));
-  if (failed) *length = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Remove the entries from a->count on. */
 static PetscErrorCode AppendedCut(AppendedFile *a, const char restart[]) {
   H5File *file = &a->file;
@@ -205,7 +163,7 @@ static PetscErrorCode AppendedCut(AppendedFile *a, const char restart[]) {
   PetscFunctionBeginUser;
   H5TruncateSeries(file, "/time", a->count); /* readers count entries by their times */
   H5FileFlush(file);
-  for (PetscInt k = 0; k < a->kind.series; k++) H5TruncateSeries(file, a->kind.path[k], a->count);
+  for (PetscInt k = 0; k < a->kind.n; k++) H5TruncateSeries(file, a->kind.series[k].path, a->count);
   H5FileFlush(file);
   PetscCall(H5FileFailed(file, &failed));
   if (failed) H5FileClose(file);
@@ -216,31 +174,57 @@ static PetscErrorCode AppendedCut(AppendedFile *a, const char restart[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AppendedGoOn(AppendedFile *a, PetscInt length, PetscInt count, const char restart[]) {
+/* Open the file of an earlier run and find its first `count` entries, none of them after the present time. */
+static PetscErrorCode AppendedFind(AppendedFile *a, const char path[], PetscInt count, const char restart[]) {
+  PetscInt length;
   PetscBool failed;
   PetscFunctionBeginUser;
+  PetscCall(AppendedRepair(a, count));
+  PetscCall(H5FileOpen(a->folder->comm, path, H5_WRITE, &a->file));
+  a->open = PETSC_TRUE;
+  PetscCall(H5SeriesLength(&a->file, "/time", &length));
   PetscCall(H5FileFailed(&a->file, &failed));
-  PetvesCheck(!failed && length >= count, a->folder->comm,
+  PetscCall(PetscMalloc1(count, &a->time));
+  for (; !failed && a->count < PetscMin(length, count); a->count++) {
+    PetscCall(H5ReadArray(&a->file, "/time", a->count, 1, &a->time[a->count]));
+    if (a->time[a->count] > a->kind.scheme->state.t) break;
+  }
+  PetscCall(H5FileFailed(&a->file, &failed));
+  PetvesCheck(!failed && a->count == count, a->folder->comm,
               "-restart %s: %s has %" PetscInt_FMT " readable %s, the checkpoint counts %" PetscInt_FMT
               "; allowed: %s as the run left it, or a new -output_dir",
-              restart, a->file.path, length, a->kind.entries, count, a->kind.name);
-  a->count = count;
-  PetscCall(PetscMalloc1(count, &a->time));
-  for (PetscInt t = 0; t < count; t++) PetscCall(H5ReadArray(&a->file, "/time", t, 1, &a->time[t]));
-  PetscCall(IndexOpen(a, count)); /* before anything in the file is changed */
-  PetscCall(AppendedCut(a, restart));
-  FolderWatch(a->folder, a->kind.name);
+              restart, path, a->count, a->kind.entries, count, a->kind.name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void AppendedSet(AppendedFile *a, PetscInt k, const PetscReal values[]) {
-  return H5WriteArray(&a->file, a->kind.path[k], a->count, EntrySize(&a->kind, k), values);
+PetscErrorCode AppendedOpen(AppendedFile *a, Folder *folder, const AppendedKind *kind, PetscInt count,
+                            const char restart[]) {
+  char path[PETSC_MAX_PATH_LEN];
+  PetscFunctionBeginUser;
+  a->folder = folder;
+  a->kind = *kind;
+  (void)PetscSNPrintf(a->index_name, sizeof(a->index_name), "%s.index", kind->name);
+  FolderPath(folder, kind->name, path);
+  if (count == APPENDED_NEW) {
+    PetscCall(AppendedMake(kind, folder->comm, path, &a->file));
+    a->open = PETSC_TRUE;
+    PetscCall(AppendedCheck(a));
+  } else
+    PetscCall(AppendedFind(a, path, count, restart));
+  PetscCall(IndexOpen(a)); /* before anything in the file is changed */
+  if (count != APPENDED_NEW) PetscCall(AppendedCut(a, restart));
+  FolderWatch(folder, kind->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void AppendedSet(AppendedFile *a, PetscInt k, PetscReal values[]) {
+  H5Transfer(&a->file, PETSC_TRUE, a->kind.series[k].path, a->count, EntrySize(&a->kind, k), values);
 }
 
 PetscErrorCode AppendedAdd(AppendedFile *a, PetscReal t) {
   PetscFunctionBeginUser;
   if (a->index) IndexPrint(a, a->count, t);
-  H5WriteArray(&a->file, "/time", a->count, 1, &t);
+  H5Transfer(&a->file, PETSC_TRUE, "/time", a->count, 1, &t);
   PetscCall(AppendedCheck(a));
   a->count++;
   PetscFunctionReturn(PETSC_SUCCESS);

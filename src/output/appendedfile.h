@@ -11,8 +11,7 @@
 
    Rank 0 alone has the file and the index; a failure is told to all ranks (FolderCheck).
 
-   Order: AppendedCreate, or AppendedOpen and AppendedGoOn; for each entry AppendedSet of every series, then
-   AppendedAdd; AppendedClose. */
+   Order: AppendedOpen; for each entry AppendedSet of every series, then AppendedAdd; AppendedClose. */
 #pragma once
 #include "output/folder.h"
 #include "output/h5series.h"
@@ -21,6 +20,13 @@
 #define APPENDED_SERIES 32
 #define APPENDED_NAME 32
 
+/* One series besides /time. */
+typedef struct {
+  char path[APPENDED_NAME];
+  PetscInt rows, columns; /* of an entry; 0 rows: an entry is one number */
+  PetscBool single;       /* values have single precision in the file */
+} AppendedSeries;
+
 /* What an appended file holds. */
 typedef struct {
   const char *name;    /* name of the file in the folder */
@@ -28,10 +34,8 @@ typedef struct {
   Scheme scheme;       /* borrowed */
   PetscErrorCode (*describe)(Scheme scheme,
                              H5File *file); /* writes attributes and what else is no series; collective */
-  PetscInt series;                          /* number of series besides /time */
-  char path[APPENDED_SERIES][APPENDED_NAME];
-  PetscInt dims[APPENDED_SERIES][2]; /* rows and columns of an entry; 0 rows: an entry is one number */
-  PetscBool single[APPENDED_SERIES]; /* values have single precision in the file */
+  PetscInt n;                               /* number of series */
+  AppendedSeries series[APPENDED_SERIES];
 } AppendedKind;
 
 typedef struct {
@@ -42,27 +46,21 @@ typedef struct {
   FILE *index;         /* rank 0, when open */
   char index_name[64]; /* name of the index in the folder */
   PetscInt count;      /* entries in the file; the next entry is set and added at this place */
-  PetscReal *time;     /* [count] times of the entries that AppendedGoOn has found; else NULL */
+  PetscReal *time;     /* [count] times of the entries that AppendedOpen has found; else NULL */
 } AppendedFile;
 
-/* AppendedAddSeries - one more series of a kind. Not collective. */
-PETSC_EXTERN void AppendedAddSeries(AppendedKind *kind, const char path[], PetscInt rows, PetscInt columns,
-                                    PetscBool single);
+/* APPENDED_NEW instead of a number of entries: the file is new. */
+#define APPENDED_NEW (-1)
 
-/* AppendedCreate - a new, empty file. Collective; stops with one line when the file cannot be written. */
-PETSC_EXTERN PetscErrorCode AppendedCreate(AppendedFile *file, Folder *folder, const AppendedKind *kind);
-
-/* AppendedOpen - the file of an earlier run. If that run was killed the file is made anew of its first `most` entries,
-   or, with PETSC_MAX_INT, of all entries that can be read. length: number of entries; 0 when the file cannot be read.
-   AppendedGoOn - cut the file to `count` entries and go on. Collective; both stop with one line, which names `restart`,
-   when there are fewer entries or the file cannot be written. */
-PETSC_EXTERN PetscErrorCode AppendedOpen(AppendedFile *file, Folder *folder, const AppendedKind *kind, PetscInt most,
-                                         PetscInt *length);
-PETSC_EXTERN PetscErrorCode AppendedGoOn(AppendedFile *file, PetscInt length, PetscInt count, const char restart[]);
+/* AppendedOpen - a new, empty file, or the file of an earlier run, cut to its first `count` entries; if that run was
+   killed the file is made anew of these entries first. Collective; stops with one line, which names `restart`, when the
+   file cannot be written or has fewer entries up to the present time. */
+PETSC_EXTERN PetscErrorCode AppendedOpen(AppendedFile *file, Folder *folder, const AppendedKind *kind, PetscInt count,
+                                         const char restart[]);
 
 /* AppendedSet - the next entry of a series. AppendedAdd - the time of the next entry, by which readers count it.
    Nothing is flushed. AppendedAdd is collective and stops with one line when the entry could not be written. */
-PETSC_EXTERN void AppendedSet(AppendedFile *file, PetscInt series, const PetscReal values[]);
+PETSC_EXTERN void AppendedSet(AppendedFile *file, PetscInt series, PetscReal values[]);
 PETSC_EXTERN PetscErrorCode AppendedAdd(AppendedFile *file, PetscReal time);
 
 /* AppendedFlush - hand everything to the system and, with sync, put it on the disk. Does nothing when the file is not

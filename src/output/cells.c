@@ -1,4 +1,5 @@
-#include "output/cells.h"
+/* Velocity and pressure at cell centres. */
+#include "output/frames.h"
 #include "scheme/fields.h"
 #include "base/agree.h"
 #include "layers/layercells.h"

@@ -12,101 +12,70 @@
 
 PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const char name[], PetscInt n, PetscInt each,
                                PetscReal values[]) {
-  const PetscInt dims[2] = {n, each};
-  const int ndims = each > 1 ? 2 : 1;
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (write) {
-    H5CreateSeries(file, name, PETSC_FALSE, ndims, dims);
-    H5WriteArray(file, name, 0, n * each, values);
-  } else {
-    H5CheckEntry(file, name, ndims, dims);
-    PetscCall(H5ReadArray(file, name, 0, n * each, values));
-  }
+  H5BeginEntry(file, write, name, each > 1 ? 2 : 1, (PetscInt[]){n, each});
+  H5Transfer(file, write, name, 0, n * each, values);
+  if (!write) PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)(n * each), MPIU_REAL, 0, file->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Write or read `each` numbers in every row of a field. */
 static PetscErrorCode CheckpointRows(H5File *file, PetscBool write, const char name[], Grid g, Field field,
                                      PetscInt each, PetscScalar values[]) {
-  const PetscInt dims[2] = {g->all_rows[field], each};
+  const PetscInt rows = g->all_rows[field];
+  PetscScalar *all;
   PetscFunctionBeginUser;
-  if (write)
-    H5CreateSeries(file, name, PETSC_FALSE, 2, dims);
-  else
-    H5CheckEntry(file, name, 2, dims);
-  PetscCall(H5TransferRows(file, write, &(H5Entry){name, 0}, g, field, each, values));
+  PetscCall(PetscCalloc1(g->rank ? 0 : rows * each, &all)); /* zero where nothing can be read */
+  if (write) PetscCall(GatherRows(g, field, each, values, all));
+  H5BeginEntry(file, write, name, 2, (PetscInt[]){rows, each});
+  H5Transfer(file, write, name, 0, rows * each, all);
+  if (!write) PetscCall(ScatterRows(g, field, each, all, values));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Write or read the velocity w of a state, and its pressure where it has one: no step needs the pressure of an older
-   state. */
-static PetscErrorCode CheckpointFields(H5File *file, PetscBool write, Grid g, const char group[], const State *q,
-                                       Vec w) {
-  char name[64];
-  PetscScalar *a[3];
+/* Write or read what a state has of the fluid: steps need neither the pressure nor, most of them, the velocity of older
+   states. */
+static PetscErrorCode CheckpointFluid(H5File *file, PetscBool write, Grid g, const char group[], const State *q) {
+  const struct {
+    const char *name;
+    Vec vector;
+    Field field;
+    PetscInt each, first; /* numbers in a row; where the field begins in the local array */
+  } all[] = {{"u", q->w, FIELD_U, g->columns[FIELD_U], 0},
+             {"v", q->w, FIELD_V, g->columns[FIELD_V], GridLocalU(g)},
+             {"p", q->p, FIELD_P, g->columns[FIELD_P], 0},
+             {"flow", q->flow, FIELD_U, StateFlowWidth(q, g), 0}};
   PetscFunctionBeginUser;
-  PetscCall(VecGetArray(w, &a[0]));
-  a[1] = a[0] + GridLocalU(g);
-  if (q->p) PetscCall(VecGetArray(q->p, &a[2]));
-  for (int f = 0; f < (q->p ? 3 : 2); f++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%c", group, "uvp"[f]));
-    PetscCall(CheckpointRows(file, write, name, g, (Field)f, g->columns[f], a[f]));
+  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
+    PetscScalar *a;
+    char name[64];
+    if (!all[k].vector) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", group, all[k].name));
+    PetscCall(VecGetArray(all[k].vector, &a));
+    PetscCall(CheckpointRows(file, write, name, g, all[k].field, all[k].each, a + all[k].first));
+    PetscCall(VecRestoreArray(all[k].vector, &a));
   }
-  if (q->p) PetscCall(VecRestoreArray(q->p, &a[2]));
-  PetscCall(VecRestoreArray(w, &a[0]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Write or read a state's flow, bit by bit. A file of solvers without such a flow gives it by its velocity w. */
-static PetscErrorCode CheckpointFlow(H5File *file, PetscBool write, Scheme s, const char group[], const State *q,
-                                     Vec w) {
-  const Grid g = s->fluid->grid;
-  PetscInt width = StateFlowWidth(q, g), there = width;
-  PetscScalar *a;
-  char name[64];
-  PetscFunctionBeginUser;
-  if (!write) PetscCall(H5GetInts(file, "flow", 1, &there));
-  if (there != width) {
-    PetscCall(StreamFlowsOf(SchemeFlows(s), w, q->flow));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/flow", group));
-  PetscCall(VecGetArray(q->flow, &a));
-  PetscCall(CheckpointRows(file, write, name, g, FIELD_U, width, a));
-  PetscCall(VecRestoreArray(q->flow, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Write or read what a state has of the fluid: no step needs the velocity of most older states. */
-static PetscErrorCode CheckpointFluid(H5File *file, PetscBool write, Scheme s, const char group[], const State *q) {
-  const DM velocity = s->fluid->grid->velocity;
-  Vec w = q->w;
-  PetscFunctionBeginUser;
-  if (!w && !q->flow) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!w) PetscCall(DMGetGlobalVector(velocity, &w));
-  if (write && !q->w) PetscCall(StreamFlowsVelocity(SchemeFlows(s), q->flow, w));
-  PetscCall(CheckpointFields(file, write, s->fluid->grid, group, q, w));
-  if (q->flow) PetscCall(CheckpointFlow(file, write, s, group, q, w));
-  if (!q->w) PetscCall(DMRestoreGlobalVector(velocity, &w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme s, PetscInt j, State *q) {
   static const char *const groups[] = {"", "/previous", "/previous_1", "/previous_2", "/previous_3", "/previous_4"};
-  Gathered all;
   PetscFunctionBeginUser;
-  PetscCall(CheckpointFluid(file, write, s, groups[j], q));
-  PetscCall(GatheredCreate(q, &all));
-  if (write) PetscCall(GatherState(q, &all));
-  for (int k = 0; k < GATHERED_COUNT; k++) {
-    GatheredPart *p = &all.part[k];
+  PetscCall(CheckpointFluid(file, write, s->fluid->grid, groups[j], q));
+  for (int k = 0; k < STATE_PARTS; k++) {
+    const StatePart part = StatePartOf(s, q, (StatePartName)k);
+    PetscReal *values;
     char name[64];
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", groups[j], p->name));
-    PetscCall(CheckpointEntry(file, write, name, p->n, p->each, p->values));
+    if (!part.n) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", groups[j], part.name));
+    PetscCall(PetscCalloc1(part.n * part.each, &values));
+    if (write) PetscCall(StateGather(&part, values));
+    PetscCall(CheckpointEntry(file, write, name, part.n, part.each, values));
+    if (!write) PetscCall(StateScatter(&part, values));
+    PetscCall(PetscFree(values));
   }
-  if (!write) PetscCall(ScatterState(&all, q));
-  PetscCall(GatheredDestroy(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,21 +93,19 @@ PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNu
              {"time", 0, 1e300, NULL, &n->time},
              {"dt", 0, 1e300, NULL, &n->dt},
              {"dt_last", 0, 1e300, NULL, &n->dt_last},
-             {"step_order", 0, BDF_MOST, &n->step_order},
-             {"step_guess", 0, BDF_STATES, &n->step_guess},
-             {"flow", 0, 0, &n->flow},
+             {"step_order", 1, BDF_MOST, &n->step_order},
+             {"step_guess", 1, BDF_STATES, &n->step_guess},
              {"totals", 0, 0, n->totals, NULL, 4},
              {"dt_earlier", 0, 0, NULL, n->dt_earlier, SCHEME_PAST}};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
     const PetscInt count = PetscMax(1, all[k].count);
-    if (write && all[k].whole)
-      H5PutInts(file, all[k].name, count, all[k].whole);
-    else if (write)
-      H5PutReals(file, all[k].name, count, all[k].real);
+    const hid_t type = all[k].whole ? H5_INT : H5_REAL;
+    void *const values = all[k].whole ? (void *)all[k].whole : (void *)all[k].real;
+    if (write)
+      H5Put(file, all[k].name, type, count, values);
     else
-      PetscCall(all[k].whole ? H5GetInts(file, all[k].name, count, all[k].whole)
-                             : H5GetReals(file, all[k].name, count, all[k].real));
+      PetscCall(H5Get(file, all[k].name, type, count, values));
     const PetscReal value = all[k].whole ? *all[k].whole : *all[k].real;
     PetvesCheck(write || all[k].most == 0 || (value >= all[k].least && value <= all[k].most), file->comm,
                 "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", file->path, all[k].name,
@@ -165,11 +132,11 @@ static PetscErrorCode CheckpointWriteScene(Scheme s, H5File *file) {
   H5PutText(file, "vesicle_digest", s->scene->shape.digest);
   H5PutText(file, "obstacle_digest", s->scene->obstacles.outline.digest);
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  H5PutInts(file, "vesicles", 1, &l->bodies);
-  H5PutInts(file, "vesicle_start", l->bodies + 1, l->start);
-  H5PutReals(file, "vesicle_ds", l->bodies, m->ds);
-  H5PutReals(file, "vesicle_area", l->bodies, m->A0);
-  H5PutReals(file, "vesicle_length", l->bodies, m->L0);
+  H5Put(file, "vesicles", H5_INT, 1, &l->bodies);
+  H5Put(file, "vesicle_start", H5_INT, l->bodies + 1, l->start);
+  H5Put(file, "vesicle_ds", H5_REAL, l->bodies, m->ds);
+  H5Put(file, "vesicle_area", H5_REAL, l->bodies, m->A0);
+  H5Put(file, "vesicle_length", H5_REAL, l->bodies, m->L0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -283,7 +250,6 @@ static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r
                          .step_level = s->policy.adaptive ? s->plan.level : 0,
                          .step_order = s->plan.order,
                          .step_guess = s->plan.guess,
-                         .flow = StateFlowWidth(q, s->fluid->grid),
                          .frames = frames,
                          .totals = {r->solves, r->tension, r->bending, r->coupled},
                          .time = q->t,
@@ -292,7 +258,7 @@ static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r
   PetscReal *memory;
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < s->past; j++) n.dt_earlier[j] = s->old[j].dt_last;
-  H5PutInts(file, "format", 1, &format);
+  H5Put(file, "format", H5_INT, 1, &format);
   PetscCall(CheckpointMoveNumbers(file, PETSC_TRUE, &n));
   H5PutText(file, "series_row", r->text);
   PetscCall(CheckpointWriteScene(s, file));
@@ -313,7 +279,7 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   PetscFunctionBeginUser;
   PetscCall(SchemeFields(s));
   FolderPath(c->folder, CHECKPOINT_TEMPORARY, path);
-  PetscCall(H5FileCreate(c->folder->comm, path, &file));
+  PetscCall(H5FileOpen(c->folder->comm, path, H5_NEW, &file));
   PetscCall(CheckpointWriteAll(&file, s, record, frames));
   H5FileClose(&file);
   if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;

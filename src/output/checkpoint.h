@@ -13,14 +13,13 @@
 #include "output/h5series.h"
 #include "output/record.h"
 
-#define CHECKPOINT_FORMAT 7
+#define CHECKPOINT_FORMAT 8
 #define CHECKPOINT_TAIL "petves checkpoint, crc32 %08x\n"
 #define CHECKPOINT_TAIL_LENGTH 34
 
 /* The numbers of a checkpoint. */
 typedef struct {
   PetscInt step, past, step_level, step_order, step_guess; /* state, states before it, step-size control */
-  PetscInt flow;                                           /* numbers of a flow in a row of u */
   PetscInt frames;                                         /* scheduled frames in run.h5 */
   PetscInt totals[4]; /* sums over the columns of series.csv: solves, tension, bending, coupled */
   PetscReal time, dt, dt_last, dt_earlier[SCHEME_PAST];
@@ -53,6 +52,11 @@ PETSC_EXTERN PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const
                                             PetscReal values[]);
 PETSC_EXTERN PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme scheme, PetscInt j, State *state);
 PETSC_EXTERN PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *numbers);
+
+/* RestartRead - the state of -restart's checkpoint, the record and the number of scheduled frames as they were. Rank 0
+   checks the checksum, which covers every byte; then all ranks read. Numbers that a run cannot have had are refused.
+   Collective; stops with one line when the checkpoint is missing, damaged, of another format or of another scene. */
+PETSC_EXTERN PetscErrorCode RestartRead(Scheme scheme, Record *record, PetscInt *frames);
 
 /* CheckpointChecksum - CRC-32 of a file up to its last `tail` bytes, which are copied to `end`; false when the file
    cannot be read or is shorter. Not collective. */

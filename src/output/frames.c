@@ -1,5 +1,4 @@
 #include "output/frames.h"
-#include "output/cells.h"
 #include "base/version.h"
 
 #define ABOUT                                                                                                          \
@@ -14,7 +13,7 @@ static PetscErrorCode FramesPutRatios(H5File *f, Scene scene) {
   if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n, &ratio));
   for (PetscInt v = 0; v < n; v++) ratio[v] = SceneViscosityRatio(scene, v);
-  H5PutReals(f, "vesicle_viscosity_ratio", n, ratio);
+  H5Put(f, "vesicle_viscosity_ratio", H5_REAL, n, ratio);
   PetscCall(PetscFree(ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -34,9 +33,9 @@ static PetscErrorCode FramesPutLines(H5File *f, Layout l, const CurveKind kind[]
     for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++) list[n++] = k;
     if (closed) list[n++] = l->start[v];
   }
-  H5PutWhole(f, lines, n, list);
+  H5PutRows(f, lines, H5_INT, n, 0, list);
   for (PetscInt v = 0; v < l->bodies; v++) list[v] = v + 1;
-  H5PutWhole(f, number, l->bodies, list);
+  H5PutRows(f, number, H5_INT, l->bodies, 0, list);
   PetscCall(PetscFree(list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -50,9 +49,9 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   PetscCall(PetscMalloc2(2 * o->layout->M, &X, o->layout->bodies, &kind));
   ObstaclesCurves(o, 0, X);
   for (PetscInt v = 0; v < o->layout->bodies; v++) kind[v] = o->kind[v].type;
-  H5PutInts(f, "obstacle_kind", o->layout->bodies, kind);
-  H5PutInts(f, "obstacle_start", o->layout->bodies + 1, o->layout->start);
-  if (!scene->moving) H5PutRows(f, "/obstacle/markers", o->layout->M, 2, X);
+  H5Put(f, "obstacle_kind", H5_INT, o->layout->bodies, kind);
+  H5Put(f, "obstacle_start", H5_INT, o->layout->bodies + 1, o->layout->start);
+  if (!scene->moving) H5PutRows(f, "/obstacle/markers", H5_REAL, o->layout->M, 2, X);
   PetscCall(FramesPutLines(f, o->layout, o->kind, "/obstacle/lines", "/obstacle/number"));
   PetscCall(PetscFree2(X, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -63,13 +62,13 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
   const Layout l = s->membrane->layout;
   const Scene scene = s->scene;
   PetscFunctionBeginUser;
-  H5PutReals(f, "box", 4, scene->fluid.box);
-  H5PutInts(f, "cells", 2, g->n);
-  H5PutReals(f, "h", 1, &g->h);
-  H5PutReals(f, "nu", 1, &scene->fluid.nu);
-  H5PutReals(f, "c_b", 1, &scene->membrane.bending);
-  H5PutInts(f, "vesicle_start", l->bodies + 1, l->start);
-  if (l->bodies) H5PutReals(f, "vesicle_c_b", l->bodies, scene->membrane.each);
+  H5Put(f, "box", H5_REAL, 4, scene->fluid.box);
+  H5Put(f, "cells", H5_INT, 2, g->n);
+  H5Put(f, "h", H5_REAL, 1, &g->h);
+  H5Put(f, "nu", H5_REAL, 1, &scene->fluid.nu);
+  H5Put(f, "c_b", H5_REAL, 1, &scene->membrane.bending);
+  H5Put(f, "vesicle_start", H5_INT, l->bodies + 1, l->start);
+  if (l->bodies) H5Put(f, "vesicle_c_b", H5_REAL, l->bodies, scene->membrane.each);
   if (l->bodies) PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
   PetscCall(FramesPutRatios(f, scene));
   PetscCall(FramesPutObstacles(f, &scene->obstacles, s->coupling->bodies->obstacles));
@@ -86,46 +85,32 @@ PetscBool FramesAreWrapped(Scheme s) {
   return !g->free && !(g->wall[0] && g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The series of this scene, and room for the values of a frame. */
-static PetscErrorCode FramesBegin(Frames *f, Scheme s, AppendedKind *kind) {
+PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt scheduled, const char restart[]) {
   const Grid g = s->fluid->grid;
   const Obstacles o = s->coupling->bodies->obstacles;
-  const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0, n = g->n[0] * g->rows[FIELD_P];
+  const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0, moving = s->scene->obstacles.moving ? W : 0,
+                 n = g->n[0] * g->rows[FIELD_P];
   const PetscBool single = s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
-  static const char *const fluid[3] = {"/fluid/u", "/fluid/v", "/fluid/p"};
+  const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single},
+                                {"/fluid/v", g->n[1], g->n[0], single},
+                                {"/fluid/p", g->n[1], g->n[0], single},
+                                {"/vesicle/markers", M, 2},
+                                {"/vesicle/velocity", M, 2},
+                                {"/vesicle/tension", M, 1},
+                                {"/obstacle/force", W, 2},
+                                {"/obstacle/markers", moving, 2},
+                                {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2},
+                                {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2}};
+  AppendedKind kind = {.name = "run.h5", .entries = "frames", .scheme = s, .describe = FramesDescribe};
   PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
+    if (all[k].rows) kind.series[kind.n++] = all[k];
   f->scheme = s;
-  *kind = (AppendedKind){.name = "run.h5", .entries = "frames", .scheme = s, .describe = FramesDescribe};
-  for (int c = 0; c < 3; c++) AppendedAddSeries(kind, fluid[c], g->n[1], g->n[0], single);
-  if (M) AppendedAddSeries(kind, "/vesicle/markers", M, 2, PETSC_FALSE);
-  if (M) AppendedAddSeries(kind, "/vesicle/velocity", M, 2, PETSC_FALSE);
-  if (M) AppendedAddSeries(kind, "/vesicle/tension", M, 1, PETSC_FALSE);
-  if (W) AppendedAddSeries(kind, "/obstacle/force", W, 2, PETSC_FALSE);
-  if (s->scene->obstacles.moving) AppendedAddSeries(kind, "/obstacle/markers", W, 2, PETSC_FALSE);
-  if (M && FramesAreWrapped(s)) AppendedAddSeries(kind, "/vesicle/wrapped", M, 2, PETSC_FALSE);
-  if (s->scene->obstacles.moving && FramesAreWrapped(s))
-    AppendedAddSeries(kind, "/obstacle/wrapped", W, 2, PETSC_FALSE);
-  PetscCall(PetscMalloc5(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2], 2 * M, &f->wrapped, 2 * W, &f->solid));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FramesCreate(Frames *f, Folder *folder, Scheme scheme) {
-  AppendedKind kind;
-  PetscFunctionBeginUser;
-  PetscCall(FramesBegin(f, scheme, &kind));
-  PetscCall(AppendedCreate(&f->file, folder, &kind));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FramesGoOn(Frames *f, Folder *folder, Scheme scheme, PetscInt scheduled, const char restart[]) {
-  AppendedKind kind;
-  PetscInt length;
-  PetscFunctionBeginUser;
-  PetscCall(FramesBegin(f, scheme, &kind));
-  PetscCall(AppendedOpen(&f->file, folder, &kind, scheduled, &length));
-  PetscCall(AppendedGoOn(&f->file, length, scheduled, restart));
-  f->scheduled = scheduled;
-  if (scheduled) f->time = f->file.time[scheduled - 1];
+  PetscCall(PetscMalloc4(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2],
+                         PetscMax(2 * PetscMax(M, W), g->rank ? 0 : g->n[0] * g->n[1]), &f->all));
+  PetscCall(AppendedOpen(&f->file, folder, &kind, scheduled, restart));
+  f->scheduled = f->file.count;
+  if (f->scheduled) f->time = f->file.time[f->scheduled - 1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,51 +125,55 @@ static void ShiftIntoBox(Grid g, PetscInt n, const PetscReal X[], PetscInt marke
   }
 }
 
-/* The markers by whole periods in the box, from series k on; f->solid has those of obstacles where they move. */
-static PetscErrorCode FramesSetWrapped(Frames *f, const Gathered *now, PetscInt k) {
-  const Scheme s = f->scheme;
-  const Layout l = s->membrane->layout;
+/* Shift markers X of all vesicles, or of all obstacles (solids), by whole periods into the box. */
+static void FramesWrap(Scheme s, PetscBool solids, PetscReal X[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const PetscReal *X = now->part[GATHERED_MARKERS].values;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(f->wrapped, X, 2 * l->M));
+  const Layout l = solids ? o->layout : s->membrane->layout;
   for (PetscInt v = 0; v < l->bodies; v++) {
-    const PetscInt at = 2 * l->start[v], n = LayoutCount(l, v);
-    ShiftIntoBox(s->fluid->grid, n, X + at, n, f->wrapped + at);
+    const PetscInt n = LayoutCount(l, v);
+    PetscReal *own = X + 2 * l->start[v];
+    if (!solids)
+      ShiftIntoBox(s->fluid->grid, n, own, n, own);
+    else if (o->motion[v].carried)
+      ShiftIntoBox(s->fluid->grid, 1, MotionPose(&o->motion[v], s->state.t).center, n, own);
   }
-  if (l->M) AppendedSet(&f->file, k++, f->wrapped);
-  if (!s->scene->obstacles.moving) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < o->layout->bodies; v++) {
-    const BodyPose pose = MotionPose(&o->motion[v], s->state.t);
-    if (o->motion[v].carried)
-      ShiftIntoBox(s->fluid->grid, 1, pose.center, LayoutCount(o->layout, v), f->solid + 2 * o->layout->start[v]);
-  }
-  AppendedSet(&f->file, k, f->solid);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) {
+PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
   const Scheme s = f->scheme;
   const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscBool wrapped = FramesAreWrapped(s), moving = s->scene->obstacles.moving;
   AppendedFile *file = &f->file;
   PetscInt k = 0;
   PetscFunctionBeginUser;
   file->count = f->scheduled;
   PetscCall(CellFields(s, f->cells[0], f->cells[1], f->cells[2]));
-  for (; k < 3; k++)
-    PetscCall(H5TransferRows(&file->file, PETSC_TRUE, &(H5Entry){file->kind.path[k], file->count}, s->fluid->grid,
-                             FIELD_P, s->fluid->grid->n[0], f->cells[k]));
-  for (int part = GATHERED_MARKERS; part <= GATHERED_TENSION; part++)
-    if (now->part[part].n) AppendedSet(file, k++, now->part[part].values);
-  if (o) {
-    ObstaclesOrder(o, now->part[GATHERED_SOLIDS].values, f->solid);
-    AppendedSet(file, k++, f->solid);
+  for (; k < 3; k++) {
+    PetscCall(GatherRows(s->fluid->grid, FIELD_P, s->fluid->grid->n[0], f->cells[k], f->all));
+    AppendedSet(file, k, f->all);
   }
-  if (s->scene->obstacles.moving) {
-    ObstaclesCurves(o, s->state.t, f->solid);
-    AppendedSet(file, k++, f->solid);
+  for (int name = 0; name < STATE_PARTS; name++) {
+    const StatePart part = StatePartOf(s, &s->state, (StatePartName)name);
+    if (!part.n) continue;
+    PetscCall(StateGather(&part, f->all));
+    if (name == STATE_SOLIDS) ObstaclesOrder(o, f->all, f->all);
+    AppendedSet(file, k++, f->all);
   }
-  if (FramesAreWrapped(s)) PetscCall(FramesSetWrapped(f, now, k));
+  if (moving) {
+    ObstaclesCurves(o, s->state.t, f->all);
+    AppendedSet(file, k++, f->all);
+  }
+  if (wrapped && s->membrane->layout->M) {
+    const StatePart markers = StatePartOf(s, &s->state, STATE_MARKERS);
+    PetscCall(StateGather(&markers, f->all));
+    FramesWrap(s, PETSC_FALSE, f->all);
+    AppendedSet(file, k++, f->all);
+  }
+  if (wrapped && moving) {
+    ObstaclesCurves(o, s->state.t, f->all);
+    FramesWrap(s, PETSC_TRUE, f->all);
+    AppendedSet(file, k, f->all);
+  }
   PetscCall(AppendedFlush(file, PETSC_FALSE)); /* values before the time by which readers count them */
   PetscCall(AppendedAdd(file, s->state.t));
   PetscCall(AppendedFlush(file, PETSC_FALSE));
@@ -196,6 +185,6 @@ PetscErrorCode FramesWrite(Frames *f, const Gathered *now, PetscBool scheduled) 
 PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
   PetscFunctionBeginUser;
   PetscCall(AppendedClose(&f->file, good));
-  PetscCall(PetscFree5(f->cells[0], f->cells[1], f->cells[2], f->wrapped, f->solid));
+  PetscCall(PetscFree4(f->cells[0], f->cells[1], f->cells[2], f->all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,25 +13,29 @@ typedef struct {
   PetscInt scheduled;    /* frames at multiples of -output_every, the first included */
   PetscReal time;        /* time of the last frame */
   PetscScalar *cells[3]; /* u, v, p at cell centres of this rank's rows */
-  PetscReal *wrapped;    /* [M][2] the vesicles' markers by whole periods in the box; work */
-  PetscReal *solid;      /* [W][2] force on or places of obstacles' markers; work */
+  PetscReal *all;        /* values of all ranks; work */
 } Frames;
 
 /* FramesAreWrapped - whether the file has the markers by whole periods in the box too: where the box is periodic. Not
    collective. */
 PETSC_EXTERN PetscBool FramesAreWrapped(Scheme scheme);
 
-/* FramesCreate - a new, empty file. FramesGoOn - the file of an earlier run, cut to its first `scheduled` frames, whose
-   times are in `file`: a frame that was saved only because that run ended goes. Collective; FramesGoOn stops with one
-   line, which names `restart`, when there are fewer frames. */
-PETSC_EXTERN PetscErrorCode FramesCreate(Frames *frames, Folder *folder, Scheme scheme);
-PETSC_EXTERN PetscErrorCode FramesGoOn(Frames *frames, Folder *folder, Scheme scheme, PetscInt scheduled,
+/* FramesOpen - a new, empty file (`scheduled` APPENDED_NEW), or the file of an earlier run, cut to its first
+   `scheduled` frames by AppendedOpen: a frame that was saved only because that run ended goes. Collective. */
+PETSC_EXTERN PetscErrorCode FramesOpen(Frames *frames, Folder *folder, Scheme scheme, PetscInt scheduled,
                                        const char restart[]);
 
-/* FramesWrite - add a frame of the scheme's present fields and of its markers as gathered. scheduled: the time is one
+/* FramesWrite - add a frame of the scheme's present state. scheduled: the time is one
    of -output_every, not only the end of this run. The next frame replaces a frame that is not scheduled, where a run
    goes on after its end. Collective; stops with one line when the frame cannot be written. */
-PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, const Gathered *now, PetscBool scheduled);
+PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, PetscBool scheduled);
+
+/* CellFields - velocity u, v, background included, and pressure p at cell centres, of the disturbance unless the form
+   is total. The velocity is the mean of the cell's faces and the background's; next to membranes the near field
+   corrects it. In unbounded fluid, where nothing is on the grid, the fields are those of the single layer of the
+   membranes, with no pressure far away. Arrays [rows][nx] of this rank's rows, NULL on every rank for a field that is
+   not wanted. Collective. */
+PETSC_EXTERN PetscErrorCode CellFields(Scheme scheme, PetscReal u[], PetscReal v[], PetscReal p[]);
 
 /* FramesClose - close the file and free everything. good: all of it was written, or a line has said that it was not;
    TRUE on ranks other than 0. Not collective. */

@@ -1,63 +1,60 @@
 #include "output/gathered.h"
 
-static Vec GatheredVector(const State *q, int part) {
-  const Vec all[GATHERED_COUNT] = {q->X, q->U, q->sigma, q->solid};
-  return all[part];
+StatePart StatePartOf(Scheme s, const State *q, StatePartName name) {
+  const Layout vesicles = s->membrane->layout;
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const StatePart all[STATE_PARTS] = {{"vesicle/markers", 2, vesicles, q->X},
+                                      {"vesicle/velocity", 2, vesicles, q->U},
+                                      {"vesicle/tension", 1, vesicles, q->sigma},
+                                      {"obstacle/force", 2, o ? o->layout : NULL, q->solid}};
+  StatePart part = all[name];
+  if (part.vector) part.n = part.layout->M;
+  return part;
 }
 
-PetscErrorCode GatheredCreate(const State *q, Gathered *g) {
+PetscErrorCode StateGather(const StatePart *p, PetscReal values[]) {
   PetscFunctionBeginUser;
-  *g = (Gathered){{{"vesicle/markers", 2}, {"vesicle/velocity", 2}, {"vesicle/tension", 1}, {"obstacle/force", 2}}};
-  for (int k = 0; k < GATHERED_COUNT; k++) {
-    PetscInt size = 0;
-    if (GatheredVector(q, k)) PetscCall(VecGetSize(GatheredVector(q, k), &size));
-    g->part[k].n = size / g->part[k].each;
-    PetscCall(PetscCalloc1(size, &g->part[k].values));
+  if (p->n) PetscCall(LayoutGatherVec(p->layout, p->vector, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StateScatter(const StatePart *p, const PetscReal values[]) {
+  PetscInt first, end;
+  PetscScalar *own;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetOwnershipRange(p->vector, &first, &end));
+  PetscCall(VecGetArray(p->vector, &own));
+  PetscCall(PetscArraycpy(own, values + first, end - first));
+  PetscCall(VecRestoreArray(p->vector, &own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The numbers of each rank's rows, and where they begin; the caller frees both (PetscFree2). */
+static PetscErrorCode RowsOfRanks(Grid g, Field field, PetscInt each, PetscMPIInt **count, PetscMPIInt **first) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(g->size, count, g->size, first));
+  for (PetscMPIInt r = 0; r < g->size; r++) {
+    const PetscInt rows = r < g->size - 1 ? g->block : g->all_rows[field] - r * g->block;
+    PetscCall(PetscMPIIntCast(each * rows, *count + r));
+    PetscCall(PetscMPIIntCast(each * r * g->block, *first + r));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GatherState(const State *q, Gathered *g) {
+PetscErrorCode GatherRows(Grid g, Field field, PetscInt each, const PetscScalar own[], PetscScalar all[]) {
+  PetscMPIInt *count, *first;
   PetscFunctionBeginUser;
-  for (int k = 0; k < GATHERED_COUNT; k++) {
-    const Vec vector = GatheredVector(q, k);
-    const PetscInt *range;
-    const PetscScalar *own;
-    PetscMPIInt rank, size, *count, *at;
-    if (!g->part[k].n) continue;
-    const MPI_Comm comm = PetscObjectComm((PetscObject)vector);
-    PetscCallMPI(MPI_Comm_rank(comm, &rank));
-    PetscCallMPI(MPI_Comm_size(comm, &size));
-    PetscCall(VecGetOwnershipRanges(vector, &range));
-    PetscCall(PetscMalloc2(size, &count, size, &at));
-    for (PetscMPIInt r = 0; r < size; r++) {
-      PetscCall(PetscMPIIntCast(range[r], &at[r]));
-      PetscCall(PetscMPIIntCast(range[r + 1] - range[r], &count[r]));
-    }
-    PetscCall(VecGetArrayRead(vector, &own));
-    PetscCallMPI(MPI_Allgatherv(own, count[rank], MPIU_REAL, g->part[k].values, count, at, MPIU_REAL, comm));
-    PetscCall(VecRestoreArrayRead(vector, &own));
-    PetscCall(PetscFree2(count, at));
-  }
+  PetscCall(RowsOfRanks(g, field, each, &count, &first));
+  PetscCallMPI(MPI_Gatherv(own, count[g->rank], MPIU_SCALAR, all, count, first, MPIU_SCALAR, 0, g->comm));
+  PetscCall(PetscFree2(count, first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ScatterState(const Gathered *g, const State *q) {
+PetscErrorCode ScatterRows(Grid g, Field field, PetscInt each, const PetscScalar all[], PetscScalar own[]) {
+  PetscMPIInt *count, *first;
   PetscFunctionBeginUser;
-  for (int k = 0; k < GATHERED_COUNT; k++) {
-    PetscInt first, end;
-    PetscScalar *own;
-    if (!g->part[k].n) continue;
-    PetscCall(VecGetOwnershipRange(GatheredVector(q, k), &first, &end));
-    PetscCall(VecGetArray(GatheredVector(q, k), &own));
-    PetscCall(PetscArraycpy(own, g->part[k].values + first, end - first));
-    PetscCall(VecRestoreArray(GatheredVector(q, k), &own));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GatheredDestroy(Gathered *g) {
-  PetscFunctionBeginUser;
-  for (int k = 0; k < GATHERED_COUNT; k++) PetscCall(PetscFree(g->part[k].values));
+  PetscCall(RowsOfRanks(g, field, each, &count, &first));
+  PetscCallMPI(MPI_Scatterv(all, count, first, MPIU_SCALAR, own, count[g->rank], MPIU_SCALAR, 0, g->comm));
+  PetscCall(PetscFree2(count, first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,25 +1,27 @@
-/* The vectors of a state on markers as arrays of all ranks' values. Writers of files and the restart touch
-   these vectors here only. A gather is one message a vector; a scatter needs none, as every rank copies its own part.
- */
+/* Values of all ranks for writers of files, the restart and callers: the vectors of a state on markers, on every rank,
+   and rows of the grid, on rank 0. */
 #pragma once
 #include "scheme/scheme.h"
 
-enum { GATHERED_MARKERS, GATHERED_VELOCITY, GATHERED_TENSION, GATHERED_SOLIDS, GATHERED_COUNT };
-
+/* A vector of a state on markers. */
+typedef enum { STATE_MARKERS, STATE_VELOCITY, STATE_TENSION, STATE_SOLIDS, STATE_PARTS } StatePartName;
 typedef struct {
-  const char *name;  /* in checkpoints */
-  PetscInt each;     /* numbers a marker, or 1 */
-  PetscInt n;        /* markers; 0: the state has no such vector */
-  PetscReal *values; /* [n][each] the same on every rank */
-} GatheredPart;
+  const char *name; /* in files */
+  PetscInt each;    /* numbers a marker, or 1 */
+  Layout layout;    /* of the vesicles or the obstacles */
+  Vec vector;
+  PetscInt n; /* markers; 0: the state has no such vector */
+} StatePart;
 
-typedef struct {
-  GatheredPart part[GATHERED_COUNT];
-} Gathered;
+/* StatePartOf - a vector of a state of the scheme; not collective. StateGather - values[n][each] of all ranks, on every
+   rank; StateScatter - every rank takes its own of the values. Collective. */
+PETSC_EXTERN StatePart StatePartOf(Scheme scheme, const State *state, StatePartName name);
+PETSC_EXTERN PetscErrorCode StateGather(const StatePart *part, PetscReal values[]);
+PETSC_EXTERN PetscErrorCode StateScatter(const StatePart *part, const PetscReal values[]);
 
-/* GatheredCreate - arrays for the vectors of a state, zero. GatherState - copy the state's vectors into the arrays.
-   ScatterState - copy the arrays into the state's vectors. GatheredDestroy - free the arrays. Collective. */
-PETSC_EXTERN PetscErrorCode GatheredCreate(const State *state, Gathered *all);
-PETSC_EXTERN PetscErrorCode GatherState(const State *state, Gathered *all);
-PETSC_EXTERN PetscErrorCode ScatterState(const Gathered *all, const State *state);
-PETSC_EXTERN PetscErrorCode GatheredDestroy(Gathered *all);
+/* GatherRows - all[rows][each] on rank 0 of every rank's rows own[][each] of a field of the grid. ScatterRows - every
+   rank gets its rows of rank 0's. Collective. */
+PETSC_EXTERN PetscErrorCode GatherRows(Grid grid, Field field, PetscInt each, const PetscScalar own[],
+                                       PetscScalar all[]);
+PETSC_EXTERN PetscErrorCode ScatterRows(Grid grid, Field field, PetscInt each, const PetscScalar all[],
+                                        PetscScalar own[]);

@@ -53,9 +53,9 @@ static void DriverRegister(void) {
   (void)H5Pclose(access);
 }
 
-/* Open or create rank 0's file with the driver above. Without a cache of chunks a write that fails does so in H5Dwrite,
-   not when the dataset is closed, which HDF5 cannot undo. */
-static PetscErrorCode FileBegin(MPI_Comm comm, const char path[], PetscBool create, unsigned flags, H5File *f) {
+/* Rank 0's file has the driver above. Without a cache of chunks a write that fails does so in H5Dwrite, not when the
+   dataset is closed, which HDF5 cannot undo. */
+PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], H5Mode mode, H5File *f) {
   PetscFunctionBeginUser;
   f->comm = comm;
   f->id = -1;
@@ -68,18 +68,11 @@ static PetscErrorCode FileBegin(MPI_Comm comm, const char path[], PetscBool crea
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   (void)H5Pset_cache(access, 0, 0, 0, 0);
   if (driver.id >= 0) (void)H5Pset_driver(access, driver.id, NULL); /* negative: HDF5 has refused the driver */
-  if (create) (void)unlink(path);                                   /* a link leads to a file that is not the run's */
-  H5Try(f, f->id = create ? H5Fcreate(path, flags, H5P_DEFAULT, access) : H5Fopen(path, flags, access));
+  if (mode == H5_NEW) (void)unlink(path);                           /* a link leads to a file that is not the run's */
+  H5Try(f, f->id = mode == H5_NEW ? H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access)
+                                  : H5Fopen(path, mode == H5_READ ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access));
   (void)H5Pclose(access);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *f) {
-  return FileBegin(comm, path, PETSC_TRUE, H5F_ACC_TRUNC, f);
-}
-
-PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBool write, H5File *f) {
-  return FileBegin(comm, path, PETSC_FALSE, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, f);
 }
 
 void H5FileFlush(H5File *f) {
@@ -104,25 +97,22 @@ void H5FileClose(H5File *f) {
 }
 
 PetscErrorCode H5FileFailed(const H5File *f, PetscBool *failed) {
-  PetscMPIInt bad = f->failed;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&bad, 1, MPI_INT, 0, f->comm));
-  *failed = bad ? PETSC_TRUE : PETSC_FALSE;
+  *failed = f->failed;
+  PetscCallMPI(MPI_Bcast(failed, 1, MPIU_BOOL, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static hid_t AttributeIntType(void) {
-  return sizeof(PetscInt) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
 }
 
 /* The most numbers of an attribute: HDF5 keeps no more than 64 KiB with an object. */
 #define ATTRIBUTE_NUMBERS 8000
 
-static void DatasetPut(H5File *f, const char name[], hid_t type, int ndims, const hsize_t size[], const void *values) {
-  const hid_t link = H5Pcreate(H5P_LINK_CREATE);
+void H5PutRows(H5File *f, const char name[], hid_t type, PetscInt rows, PetscInt columns, const void *values) {
+  const hsize_t size[2] = {(hsize_t)rows, (hsize_t)columns};
   hid_t space = -1, set = -1;
+  if (f->rank || f->failed) return;
+  const hid_t link = H5Pcreate(H5P_LINK_CREATE);
   H5Try(f, H5Pset_create_intermediate_group(link, 1));
-  H5Try(f, space = H5Screate_simple(ndims, size, NULL));
+  H5Try(f, space = H5Screate_simple(columns ? 2 : 1, size, NULL));
   H5Try(f, set = H5Dcreate2(f->id, name, type, space, link, H5P_DEFAULT, H5P_DEFAULT));
   H5Try(f, H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
   if (set >= 0) H5Try(f, H5Dclose(set));
@@ -130,24 +120,10 @@ static void DatasetPut(H5File *f, const char name[], hid_t type, int ndims, cons
   (void)H5Pclose(link);
 }
 
-static void DatasetGet(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
-  hid_t set = -1, space = -1;
-  H5Try(f, set = H5Dopen2(f->id, name, H5P_DEFAULT));
-  H5Try(f, space = H5Dget_space(set));
-  H5Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
-  H5Try(f, H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
-  if (space >= 0) (void)H5Sclose(space);
-  if (set >= 0) (void)H5Dclose(set);
-}
-
 static void AttributePut(H5File *f, const char name[], hid_t type, PetscInt n, const void *values) {
   const hsize_t size = (hsize_t)n;
   hid_t space = -1, attribute = -1;
   if (f->rank || f->failed) return;
-  if (n > ATTRIBUTE_NUMBERS) {
-    DatasetPut(f, name, type, 1, &size, values);
-    return;
-  }
   H5Try(f, space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
   H5Try(f, attribute = H5Acreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
   H5Try(f, H5Awrite(attribute, type, values));
@@ -155,60 +131,30 @@ static void AttributePut(H5File *f, const char name[], hid_t type, PetscInt n, c
   if (space >= 0) H5Try(f, H5Sclose(space));
 }
 
-void H5PutReals(H5File *f, const char name[], PetscInt n, const PetscReal values[]) {
-  AttributePut(f, name, H5T_NATIVE_DOUBLE, n, values);
+void H5Put(H5File *f, const char name[], hid_t type, PetscInt n, const void *values) {
+  if (n > ATTRIBUTE_NUMBERS)
+    H5PutRows(f, name, type, n, 0, values);
+  else
+    AttributePut(f, name, type, n, values);
 }
 
-void H5PutInts(H5File *f, const char name[], PetscInt n, const PetscInt values[]) {
-  AttributePut(f, name, AttributeIntType(), n, values);
-}
-
-void H5PutRows(H5File *f, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]) {
-  const hsize_t size[2] = {(hsize_t)rows, (hsize_t)n};
-  if (!f->rank && !f->failed) DatasetPut(f, name, H5T_NATIVE_DOUBLE, 2, size, values);
-}
-
-void H5PutWhole(H5File *f, const char name[], PetscInt n, const PetscInt values[]) {
-  const hsize_t size = (hsize_t)n;
-  if (!f->rank && !f->failed) DatasetPut(f, name, AttributeIntType(), 1, &size, values);
-}
-
-static void AttributePutString(H5File *f, const char name[], const char value[]) {
-  hid_t type;
+/* Rank 0 reads the n values of an attribute or, of many, of a dataset. */
+static void RootGet(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
+  const PetscBool many = n > ATTRIBUTE_NUMBERS ? PETSC_TRUE : PETSC_FALSE;
+  hid_t item = -1, space = -1;
   if (f->rank || f->failed) return;
-  type = H5Tcopy(H5T_C_S1);
-  H5Try(f, H5Tset_size(type, strlen(value) + 1));
-  AttributePut(f, name, type, 1, value);
-  (void)H5Tclose(type);
-}
-
-/* Rank 0 reads the n numbers of an attribute. */
-static void AttributeGet(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
-  hid_t attribute = -1, space = -1;
-  if (f->rank || f->failed) return;
-  if (n > ATTRIBUTE_NUMBERS) {
-    DatasetGet(f, name, type, n, values);
-    return;
-  }
-  H5Try(f, attribute = H5Aopen(f->id, name, H5P_DEFAULT));
-  H5Try(f, space = H5Aget_space(attribute));
+  H5Try(f, item = many ? H5Dopen2(f->id, name, H5P_DEFAULT) : H5Aopen(f->id, name, H5P_DEFAULT));
+  H5Try(f, space = many ? H5Dget_space(item) : H5Aget_space(item));
   H5Try(f, H5Sget_simple_extent_npoints(space) == n ? 0 : -1);
-  H5Try(f, H5Aread(attribute, type, values));
+  H5Try(f, many ? H5Dread(item, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) : H5Aread(item, type, values));
   if (space >= 0) (void)H5Sclose(space);
-  if (attribute >= 0) (void)H5Aclose(attribute);
+  if (item >= 0) (void)(many ? H5Dclose(item) : H5Aclose(item));
 }
 
-PetscErrorCode H5GetReals(H5File *f, const char name[], PetscInt n, PetscReal values[]) {
+PetscErrorCode H5Get(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
   PetscFunctionBeginUser;
-  AttributeGet(f, name, H5T_NATIVE_DOUBLE, n, values);
-  PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_REAL, 0, f->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode H5GetInts(H5File *f, const char name[], PetscInt n, PetscInt values[]) {
-  PetscFunctionBeginUser;
-  AttributeGet(f, name, AttributeIntType(), n, values);
-  PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_INT, 0, f->comm));
+  RootGet(f, name, type, n, values);
+  PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)(H5Tget_size(type) * (size_t)n), MPI_BYTE, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,7 +164,7 @@ PetscErrorCode H5GetString(H5File *f, const char name[], size_t length, char val
   if (!f->rank && !f->failed && H5Aexists(f->id, name) > 0) {
     hid_t type = H5Tcopy(H5T_C_S1);
     H5Try(f, H5Tset_size(type, length));
-    AttributeGet(f, name, type, 1, value);
+    RootGet(f, name, type, 1, value);
     (void)H5Tclose(type);
   }
   PetscCallMPI(MPI_Bcast(value, (PetscMPIInt)length, MPI_CHAR, 0, f->comm));
@@ -236,10 +182,13 @@ static void TextPieceName(const char name[], int k, char piece[64]) {
 void H5PutText(H5File *f, const char name[], const char value[]) {
   const size_t length = strlen(value);
   char part[TEXT_PIECE + 1], piece[64];
-  for (int k = 0; !k || (size_t)k * TEXT_PIECE < length; k++) {
+  for (int k = 0; !f->rank && (!k || (size_t)k * TEXT_PIECE < length); k++) {
+    const hid_t type = H5Tcopy(H5T_C_S1);
     TextPieceName(name, k, piece);
     (void)PetscStrncpy(part, value + (size_t)k * TEXT_PIECE, sizeof(part));
-    AttributePutString(f, piece, part);
+    H5Try(f, H5Tset_size(type, strlen(part) + 1));
+    AttributePut(f, piece, type, 1, part);
+    (void)H5Tclose(type);
   }
 }
 
@@ -266,13 +215,10 @@ static herr_t LinkIsHard(hid_t group, const char *name, const H5L_info_t *info, 
 }
 
 PetscErrorCode H5CheckLinks(H5File *f, PetscBool *plain) {
-  PetscMPIInt good = 1;
   PetscFunctionBeginUser;
   *plain = PETSC_TRUE;
   if (!f->rank && !f->failed && H5Lvisit(f->id, H5_INDEX_NAME, H5_ITER_NATIVE, LinkIsHard, plain) < 0)
     *plain = PETSC_FALSE;
-  good = *plain ? 1 : 0;
-  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, f->comm));
-  *plain = good ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Bcast(plain, 1, MPIU_BOOL, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,10 +31,9 @@ typedef struct {
 PETSC_EXTERN PetscBool H5WriteLost(void);
 PETSC_EXTERN haddr_t H5LastRead(void);
 
-/* H5FileCreate - new file; a file of this name is removed first. H5FileOpen - existing file, to read or to write on.
-   Collective. */
-PETSC_EXTERN PetscErrorCode H5FileCreate(MPI_Comm comm, const char path[], H5File *file);
-PETSC_EXTERN PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], PetscBool write, H5File *file);
+/* H5FileOpen - a new file, in place of a file of this name, or an existing file. Collective. */
+typedef enum { H5_NEW, H5_READ, H5_WRITE } H5Mode;
+PETSC_EXTERN PetscErrorCode H5FileOpen(MPI_Comm comm, const char path[], H5Mode mode, H5File *file);
 
 /* H5FileFlush - hand everything to the system. H5FileClose - hand everything to the system and close the file; also
    after a failure. Not collective. */
@@ -44,21 +43,25 @@ PETSC_EXTERN void H5FileClose(H5File *file);
 /* H5FileFailed - whether any call so far has failed, the same on every rank. Collective. */
 PETSC_EXTERN PetscErrorCode H5FileFailed(const H5File *file, PetscBool *failed);
 
-/* Attributes of the root group, or, of more than 8000 numbers, datasets of that name. H5Put*: rank 0's values are
-   written. H5Get*: every rank gets what is read; collective. A missing number is a failure, a missing text is empty.
-   H5PutText writes a text of any length, in several attributes where HDF5 does not hold it in one. The text of
-   H5GetText is the caller's to free (PetscFree). H5GetString reads at most length - 1 characters. */
-PETSC_EXTERN void H5PutReals(H5File *file, const char name[], PetscInt n, const PetscReal values[]);
-PETSC_EXTERN void H5PutInts(H5File *file, const char name[], PetscInt n, const PetscInt values[]);
+/* Numbers of the file's root, as an attribute or, of more than 8000 numbers, as a dataset. type: H5_REAL (PetscReal) or
+   H5_INT (PetscInt). H5Put: rank 0's values are written; not collective. H5Get: every rank gets what is read; another
+   number of values is a failure; collective. */
+#define H5_REAL H5T_NATIVE_DOUBLE
+#define H5_INT (sizeof(PetscInt) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32)
+PETSC_EXTERN void H5Put(H5File *file, const char name[], hid_t type, PetscInt n, const void *values);
+PETSC_EXTERN PetscErrorCode H5Get(H5File *file, const char name[], hid_t type, PetscInt n, void *values);
+
+/* Texts of the root, in attributes. H5PutText writes a text of any length, in several attributes where HDF5 does not
+   hold it in one. H5GetText: every rank gets the text, which it frees (PetscFree); a missing text is empty; collective.
+   H5GetString reads at most length - 1 characters. */
 PETSC_EXTERN void H5PutText(H5File *file, const char name[], const char value[]);
-PETSC_EXTERN PetscErrorCode H5GetReals(H5File *file, const char name[], PetscInt n, PetscReal values[]);
-PETSC_EXTERN PetscErrorCode H5GetInts(H5File *file, const char name[], PetscInt n, PetscInt values[]);
 PETSC_EXTERN PetscErrorCode H5GetString(H5File *file, const char name[], size_t length, char value[]);
 PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **value);
 
-/* H5PutRows, H5PutWhole - a dataset values[rows][n] or values[n] of rank 0 that does not grow. Not collective. */
-PETSC_EXTERN void H5PutRows(H5File *file, const char name[], PetscInt rows, PetscInt n, const PetscReal values[]);
-PETSC_EXTERN void H5PutWhole(H5File *file, const char name[], PetscInt n, const PetscInt values[]);
+/* H5PutRows - a dataset values[rows][columns], or values[rows] with columns 0, of rank 0 that does not grow. Not
+   collective. */
+PETSC_EXTERN void H5PutRows(H5File *file, const char name[], hid_t type, PetscInt rows, PetscInt columns,
+                            const void *values);
 
 /* H5CheckLinks - whether the file itself holds all that its names stand for: a link to another file or name makes
    `plain` false. A file with a right checksum need not be one that petves wrote. Collective. */

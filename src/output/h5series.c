@@ -79,91 +79,52 @@ unsigned long long H5EntryPlace(H5File *f, const char name[], PetscInt index) {
   return f->failed ? 0 : place;
 }
 
-/* Write or read rows[1] rows of entry `index` from row rows[0] on, n values in all, from or to rank 0's array; NULL:
-   the whole entry. A series whose rows have another size is an error. */
-static void EntryTransfer(H5File *f, PetscBool write, const char name[], PetscInt index, const PetscInt rows[2],
-                          PetscInt n, void *values) {
-  hsize_t size[3] = {0, 1, 1}, start[3] = {(hsize_t)index, rows ? (hsize_t)rows[0] : 0, 0}, part[3], count = 1;
+void H5Transfer(H5File *f, PetscBool write, const char name[], PetscInt index, PetscInt n, PetscReal values[]) {
+  hsize_t size[3] = {0, 1, 1}, start[3] = {(hsize_t)index, 0, 0}, part[3] = {1, 1, 1}, count = 1;
   hid_t space = -1, memory = -1;
   int ndims;
-  if (f->failed) return;
+  if (f->rank || f->failed) return;
   const hid_t set = SeriesOpen(f, name, &ndims, size);
   if (set < 0) return;
   if (write && size[0] <= (hsize_t)index) {
     size[0] = (hsize_t)index + 1;
     H5Try(f, H5Dset_extent(set, size));
   }
-  for (int d = 0; d < 3; d++) part[d] = !d ? 1 : (d == 1 && rows ? (hsize_t)rows[1] : size[d]);
-  for (int d = 0; d < ndims; d++) count *= part[d];
+  for (int d = 1; d < ndims; d++) count *= part[d] = size[d];
   H5Try(f, count == (hsize_t)n && (hsize_t)index < size[0] ? 0 : -1);
   H5Try(f, space = H5Dget_space(set));
   H5Try(f, memory = H5Screate_simple(ndims, part, NULL));
   H5Try(f, H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, part, NULL));
-  if (write)
-    H5Try(f, H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values));
-  else
-    H5Try(f, H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values));
+  H5Try(f, write ? H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values)
+                 : H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values));
   if (memory >= 0) (void)H5Sclose(memory);
   if (space >= 0) (void)H5Sclose(space);
   H5Try(f, H5Dclose(set));
 }
 
-void H5WriteArray(H5File *f, const char name[], PetscInt index, PetscInt n, const PetscReal values[]) {
-  if (!f->rank) EntryTransfer(f, PETSC_TRUE, name, index, NULL, n, (void *)values);
-}
-
 PetscErrorCode H5ReadArray(H5File *f, const char name[], PetscInt index, PetscInt n, PetscReal values[]) {
   PetscFunctionBeginUser;
-  if (!f->rank) EntryTransfer(f, PETSC_FALSE, name, index, NULL, n, values);
+  H5Transfer(f, PETSC_FALSE, name, index, n, values);
   PetscCallMPI(MPI_Bcast(values, (PetscMPIInt)n, MPIU_REAL, 0, f->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5TransferRows(H5File *f, PetscBool write, const H5Entry *entry, Grid g, Field field, PetscInt columns,
-                              PetscScalar values[]) {
-  const PetscInt own = columns * g->rows[field];
-  PetscScalar *slab = NULL;
-  PetscFunctionBeginUser;
-  if (g->rank && write) PetscCallMPI(MPI_Send(values, (PetscMPIInt)own, MPIU_SCALAR, 0, 0, g->comm));
-  if (g->rank && !write)
-    PetscCallMPI(MPI_Recv(values, (PetscMPIInt)own, MPIU_SCALAR, 0, 0, g->comm, MPI_STATUS_IGNORE));
-  if (g->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  EntryTransfer(f, write, entry->name, entry->index, (PetscInt[]){0, g->rows[field]}, own, values);
-  PetscCall(PetscCalloc1(columns * g->block, &slab)); /* zero where nothing can be read */
-  for (PetscMPIInt r = 1; r < g->size; r++) {
-    const PetscInt rows = r < g->size - 1 ? g->block : g->all_rows[field] - (g->size - 1) * g->block,
-                   n = columns * rows;
-    if (write) PetscCallMPI(MPI_Recv(slab, (PetscMPIInt)n, MPIU_SCALAR, r, 0, g->comm, MPI_STATUS_IGNORE));
-    if (rows) EntryTransfer(f, write, entry->name, entry->index, (PetscInt[]){r * g->block, rows}, n, slab);
-    if (!write) PetscCallMPI(MPI_Send(slab, (PetscMPIInt)n, MPIU_SCALAR, r, 0, g->comm));
-  }
-  PetscCall(PetscFree(slab));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether each chunk of a dataset is one entry, without filters, and nothing of it lies outside of the file. */
-static PetscBool EntryIsPlain(hid_t set, int ndims, const hsize_t size[]) {
-  const hid_t how = H5Dget_create_plist(set);
-  hsize_t chunk[3] = {0, 0, 0};
-  PetscBool plain = how >= 0 && H5Pget_layout(how) == H5D_CHUNKED && !H5Pget_external_count(how) &&
-                            !H5Pget_nfilters(how) && H5Pget_chunk(how, 3, chunk) == ndims + 1
-                        ? PETSC_TRUE
-                        : PETSC_FALSE;
-  for (int d = 0; d <= ndims && plain; d++) plain = chunk[d] == size[d] ? PETSC_TRUE : PETSC_FALSE;
+/* Whether there is one entry of these dims, in one chunk, without filters, and nothing of it outside of the file. */
+static PetscBool EntryIsPlain(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
+  hsize_t size[3], chunk[3] = {0, 0, 0};
+  int found = 0;
+  const hid_t set = SeriesOpen(f, name, &found, size), how = set < 0 ? -1 : H5Dget_create_plist(set);
+  int plain = how >= 0 && found == ndims + 1 && H5Pget_layout(how) == H5D_CHUNKED && !H5Pget_external_count(how) &&
+              !H5Pget_nfilters(how) && H5Pget_chunk(how, 3, chunk) == found;
+  for (int d = 0; d <= ndims && plain; d++) plain = chunk[d] == size[d] && size[d] == (d ? (hsize_t)dims[d - 1] : 1);
   if (how >= 0) (void)H5Pclose(how);
-  return plain;
+  if (set >= 0) (void)H5Dclose(set);
+  return plain ? PETSC_TRUE : PETSC_FALSE;
 }
 
-void H5CheckEntry(H5File *f, const char name[], int ndims, const PetscInt dims[]) {
-  hsize_t size[3] = {0, 0, 0};
-  PetscBool fits = PETSC_FALSE;
-  if (f->rank || f->failed) return;
-  const hid_t set = H5Dopen2(f->id, name, H5P_DEFAULT), space = set < 0 ? -1 : H5Dget_space(set);
-  if (space >= 0 && H5Sget_simple_extent_ndims(space) == ndims + 1 &&
-      H5Sget_simple_extent_dims(space, size, NULL) == ndims + 1)
-    fits = size[0] == 1 ? EntryIsPlain(set, ndims, size) : PETSC_FALSE;
-  for (int d = 0; d < ndims && fits; d++) fits = size[d + 1] == (hsize_t)dims[d] ? PETSC_TRUE : PETSC_FALSE;
-  if (space >= 0) (void)H5Sclose(space);
-  if (set >= 0) (void)H5Dclose(set);
-  if (!fits) f->failed = PETSC_TRUE;
+void H5BeginEntry(H5File *f, PetscBool write, const char name[], int ndims, const PetscInt dims[]) {
+  if (write)
+    H5CreateSeries(f, name, PETSC_FALSE, ndims, dims);
+  else if (!f->rank && !f->failed)
+    H5Try(f, EntryIsPlain(f, name, ndims, dims) ? 0 : -1);
 }

@@ -1,5 +1,4 @@
 #include "output/output.h"
-#include "output/restart.h"
 
 /* The first multiple of -output_every after the present time. */
 static PetscReal OutputNextTime(Output o) {
@@ -19,29 +18,22 @@ static PetscErrorCode OutputClearFolder(Output o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The files of a new run; after a restart in a new folder they begin with the checkpoint's state. */
-static PetscErrorCode OutputBeginFiles(Output o) {
-  PetscFunctionBeginUser;
-  PetscCall(SeriesPrepare(&o->series, &o->folder, o->record.header, o->record.text));
-  PetscCall(OutputClearFolder(o));
-  PetscCall(FramesCreate(&o->frames, &o->folder, o->scheme));
-  PetscCall(VesicleFileCreate(&o->vesicles, &o->folder, o->scheme));
-  PetscCall(SeriesOpen(&o->series));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The files of an earlier run, cut to what its checkpoint counts. Nothing of it is changed before all of it has been
-   found good. */
-static PetscErrorCode OutputGoOn(Output o, PetscInt frames) {
+/* The files of a new run, which begin with the checkpoint's state after a restart in a new folder; or those of an
+   earlier run, cut to what its checkpoint counts. Nothing of it is changed before all of it has been found good. */
+static PetscErrorCode OutputOpenFiles(Output o, PetscInt frames) {
   const char *restart = o->scene->output.restart;
+  PetscInt rows = APPENDED_NEW;
   PetscFunctionBeginUser;
-  PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart));
+  if (o->go_on)
+    PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart, &rows));
+  else
+    PetscCall(SeriesPrepare(&o->series, &o->folder, o->record.header, o->record.text));
   PetscCall(OutputClearFolder(o));
-  PetscCall(FramesGoOn(&o->frames, &o->folder, o->scheme, frames, restart));
-  PetscCall(VesicleFileGoOn(&o->vesicles, &o->folder, o->scheme, o->scheme->state.step, restart));
-  PetscCall(XdmfGoOn(&o->xdmf, frames, o->frames.file.time));
+  PetscCall(FramesOpen(&o->frames, &o->folder, o->scheme, o->go_on ? frames : APPENDED_NEW, restart));
+  PetscCall(VesicleFileOpen(&o->vesicles, &o->folder, o->scheme, rows, restart));
+  if (o->go_on) PetscCall(XdmfWrite(&o->xdmf, &o->frames.file));
   PetscCall(SeriesOpen(&o->series));
-  PetscCall(CheckpointAdopt(&o->checkpoint, restart));
+  if (o->go_on) PetscCall(CheckpointAdopt(&o->checkpoint, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -54,16 +46,15 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   o->scene = scene;
   o->scheme = scheme;
   PetscCall(RecordCreate(scheme->membrane->layout->bodies, &scene->obstacles, scheme->coupling->forces, &o->record));
-  PetscCall(GatheredCreate(&scheme->state, &o->now));
   PetscCall(FolderOpen(scene->comm, scene->output.dir, &o->folder));
   if (*scene->output.restart) PetscCall(RestartRead(scheme, &o->record, &frames));
   PetscCall(FolderMake(&o->folder));
   PetscCall(FolderClaim(&o->folder, scene->output.restart, scene->output.overwrite, &o->go_on));
   o->checkpoint = (Checkpoint){.folder = &o->folder, .keep = scene->output.checkpoint_keep, .step = -1};
   o->xdmf = (Xdmf){.folder = &o->folder, .scheme = scheme, .file = -1};
-  PetscCall(o->go_on ? OutputGoOn(o, frames) : OutputBeginFiles(o));
-  PetscCall(SummaryResolved(&o->folder, scheme));
-  ProgressStart(&o->progress, scene->comm, scheme->state.t);
+  PetscCall(OutputOpenFiles(o, frames));
+  o->summary = (Summary){.folder = &o->folder, .scheme = scheme, .record = &o->record};
+  PetscCall(SummaryBegin(&o->summary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -71,7 +62,6 @@ PetscErrorCode OutputDestroy(Output *output) {
   Output o = *output;
   static const char *const names[4] = {"series.csv", "run.h5", "run.xmf", "vesicles.h5"};
   PetscBool good[4];
-  PetscInt bad = 0;
   Folder folder;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
@@ -81,14 +71,11 @@ PetscErrorCode OutputDestroy(Output *output) {
   good[2] = XdmfClose(&o->xdmf);
   PetscCall(AppendedClose(&o->vesicles, &good[3]));
   PetscCall(RecordDestroy(&o->record));
-  PetscCall(GatheredDestroy(&o->now));
   FolderRelease(&o->folder);
   folder = o->folder;
   PetscCall(PetscFree(o));
   if (!*folder.path || folder.failed) PetscFunctionReturn(PETSC_SUCCESS); /* no folder, or its error is known */
-  while (bad < 4 && good[bad]) bad++;
-  PetscCallMPI(MPI_Bcast(&bad, 1, MPIU_INT, 0, folder.comm));
-  PetscCall(FolderCheck(&folder, bad == 4, names[PetscMin(bad, 3)]));
+  for (int k = 0; k < 4; k++) PetscCall(FolderCheck(&folder, good[k], names[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,11 +95,10 @@ static PetscErrorCode OutputWriteRow(Output o) {
 static PetscErrorCode OutputWriteFrame(Output o, PetscBool scheduled) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
-  PetscCall(GatherState(&o->scheme->state, &o->now));
-  PetscCall(FramesWrite(&o->frames, &o->now, scheduled));
+  PetscCall(FramesWrite(&o->frames, scheduled));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
   PetscCall(AppendedFlush(&o->vesicles, PETSC_FALSE));
-  PetscCall(XdmfWrite(&o->xdmf, o->frames.file.count - 1, o->frames.time));
+  PetscCall(XdmfWrite(&o->xdmf, &o->frames.file));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -157,22 +143,17 @@ PetscErrorCode OutputStep(Output o) {
     o->next = OutputNextTime(o);
   }
   if (every && q->step % every == 0) PetscCall(OutputCheckpoint(o));
-  ProgressLine(&o->progress, q, o->scene->time.end, PETSC_FALSE);
+  PetscCall(SummaryProgress(&o->summary, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OutputEnd(Output o, const char reason[], const char failure[]) {
   const State *q = &o->scheme->state;
-  DiskUsage usage;
   PetscFunctionBeginUser;
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(OutputCheckpoint(o)); /* first: a frame asks the flow for values, which a caller's own may not have */
   if (q->t > o->frames.time) PetscCall(OutputWriteFrame(o, PETSC_FALSE));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
-  DiskUsageCount(&o->folder, o->frames.file.count, o->checkpoint.keep, &usage);
-  PetscCall(SummaryWrite(&o->folder, o->scheme, &o->record, &usage, ProgressSeconds(&o->progress),
-                         failure ? failure : reason));
-  ProgressLine(&o->progress, q, o->scene->time.end, PETSC_TRUE);
-  PetscCall(SummaryTable(&o->folder, &o->record, &usage, ProgressSeconds(&o->progress), failure ? "stopped" : reason));
+  PetscCall(SummaryEnd(&o->summary, o->frames.file.count, reason, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,14 +19,13 @@ struct _p_Output {
   Scene scene;   /* borrowed */
   Scheme scheme; /* borrowed */
   Folder folder;
-  Gathered now;  /* the present markers */
   Record record; /* the present state in numbers */
   Series series;
   AppendedFile vesicles; /* vesicles.h5; open where vesicles are many */
   Frames frames;
   Xdmf xdmf;
   Checkpoint checkpoint;
-  Progress progress;
+  Summary summary;
   PetscBool go_on;              /* the files go on after the checkpoint of -restart */
   PetscReal next;               /* time of the next saved frame */
   PetscReal checkpoint_seconds; /* longest that writing a checkpoint has taken */

@@ -2,13 +2,16 @@
 #include "scheme/pressuredrop.h"
 #include "scheme/films.h"
 
-#define RECORD_NAME(id, name) name,
+#define RECORD_NAME(id, name, kind) name,
 const char *const SeriesColumns[COLUMN_COUNT] = {RECORD_COLUMNS(RECORD_NAME)};
 
-const int RecordVesicleColumns[] = {COLUMN_BENDING,      COLUMN_AREA,       COLUMN_LENGTH,       COLUMN_AREA_ERROR,
-                                    COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_CENTER_X,     COLUMN_CENTER_Y,
-                                    COLUMN_INCLINATION,  COLUMN_FREQUENCY,  COLUMN_NORMAL_SPEED, COLUMN_VELOCITY_X,
-                                    COLUMN_VELOCITY_Y,   COLUMN_GRAVITY,    COLUMN_GAP,          -1};
+typedef enum { RUN, PAIRS, TOTAL, WORST, MEAN, FIRST, LEAST } RecordKind;
+#define RECORD_KIND(id, name, kind) kind,
+static const RecordKind RecordKinds[COLUMN_COUNT] = {RECORD_COLUMNS(RECORD_KIND)};
+
+PetscBool RecordIsOwn(int column) {
+  return RecordKinds[column] >= TOTAL ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
 #define RECORD_ENTRY 32
@@ -145,11 +148,9 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of columns in series.csv that each vesicle has with its suffix: none of one vesicle, or of many. */
-static int RecordRepeated(const Record *r) {
-  int n = 0;
-  while (RecordVesicleColumns[n] >= 0) n++;
-  return r->vesicles > 1 && r->vesicles <= RECORD_FEW ? n : 0;
+/* Whether series.csv has a column of its own of each vesicle: not of one vesicle, nor of many. */
+static PetscBool RecordRepeats(const Record *r, int column) {
+  return r->vesicles > 1 && r->vesicles <= RECORD_FEW && RecordIsOwn(column) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Find where the energy of each force goes, by the name energy_NAME. */
@@ -174,9 +175,9 @@ static void RecordWriteHeader(Record *r, const SceneObstacles *obstacles) {
   size_t used = 0;
   for (int c = 0; c < COLUMN_COUNT; c++) RecordAddName(r, &used, SeriesColumns[c]);
   for (PetscInt v = 1; v <= r->vesicles; v++)
-    for (int c = 0; c < RecordRepeated(r); c++) {
-      (void)snprintf(name, RECORD_ENTRY, "%s_%d", SeriesColumns[RecordVesicleColumns[c]], (int)v);
-      RecordAddName(r, &used, name);
+    for (int c = 0; c < COLUMN_COUNT; c++) {
+      (void)snprintf(name, RECORD_ENTRY, "%s_%d", SeriesColumns[c], (int)v);
+      if (RecordRepeats(r, c)) RecordAddName(r, &used, name);
     }
   for (PetscInt k = 0; k < r->solids; k++) {
     ObstacleRowName(obstacles, k, name);
@@ -195,7 +196,7 @@ PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, 
   r->vesicles = vesicles;
   r->forces = forces;
   r->solids = ObstacleRowCount(obstacles);
-  r->room = (size_t)(COLUMN_COUNT + vesicles * RecordRepeated(r) + r->solids + FORCES_MOST) * RECORD_ENTRY;
+  r->room = (size_t)(COLUMN_COUNT * (1 + PetscMin(vesicles, RECORD_FEW)) + r->solids + FORCES_MOST) * RECORD_ENTRY;
   PetscCall(PetscCalloc5(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, vesicles, &r->work, (PetscInt)r->room,
                          &r->header, (PetscInt)r->room, &r->text));
   RecordPlaceEnergies(r);
@@ -224,16 +225,6 @@ static void RecordVesicle(Membrane m, PetscInt v, const PetscScalar X[], const P
   row[COLUMN_FREQUENCY] = MembraneFrequency(m, v, X, U);
   row[COLUMN_NORMAL_SPEED] = MembraneNormalSpeed(m, v, X, U);
   MembraneCentroidVelocity(m, v, X, U, &row[COLUMN_VELOCITY_X]);
-}
-
-static PetscErrorCode RecordGaps(Record *r, Scheme s) {
-  PetscReal *each;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(r->vesicles, &each));
-  PetscCall(FilmsGaps(s, &r->last[COLUMN_GAP], each));
-  for (PetscInt v = 0; v < r->vesicles; v++) r->each[v * COLUMN_COUNT + COLUMN_GAP] = each[v];
-  PetscCall(PetscFree(each));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The energies of the forces: in the columns of the own vesicles, or as sums over all vesicles. */
@@ -270,20 +261,24 @@ PetscErrorCode RecordMeasure(Record *r, Scheme s) {
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->each, size, MPIU_REAL, MPI_SUM, l->comm));
-  PetscCall(RecordGaps(r, s));
+  PetscCall(FilmsGaps(s, &r->last[COLUMN_GAP], r->work));
+  for (PetscInt v = 0; v < r->vesicles; v++) r->each[v * COLUMN_COUNT + COLUMN_GAP] = r->work[v];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Add one vesicle to the columns of all vesicles: totals, worst values and means. Neither a total nor a worst value of
-   angles means anything: the inclination and the frequency of the first vesicle stand for all. */
-static void RecordCombine(PetscInt vesicles, const PetscReal one[], PetscReal all[]) {
-  const int total[] = {COLUMN_BENDING, COLUMN_AREA, COLUMN_LENGTH, COLUMN_GRAVITY, COLUMN_CONTACT};
-  const int worst[] = {COLUMN_AREA_ERROR, COLUMN_LENGTH_ERROR, COLUMN_EDGE_RATIO, COLUMN_NORMAL_SPEED};
-  const int mean[] = {COLUMN_CENTER_X, COLUMN_CENTER_Y, COLUMN_VELOCITY_X, COLUMN_VELOCITY_Y};
-  for (int c = 0; c < 5; c++) all[total[c]] += one[total[c]];
-  for (int c = 0; c < 4; c++)
-    if (PetscAbsReal(one[worst[c]]) > PetscAbsReal(all[worst[c]])) all[worst[c]] = one[worst[c]];
-  for (int c = 0; c < 4; c++) all[mean[c]] += one[mean[c]] / vesicles;
+/* The columns of all vesicles from those of each. RecordMeasure finds the least gap. */
+static void RecordCombine(Record *r) {
+  for (PetscInt v = 0; v < r->vesicles; v++)
+    for (int c = 0; c < COLUMN_COUNT; c++) {
+      const RecordKind kind = RecordKinds[c];
+      const PetscReal one = r->each[v * COLUMN_COUNT + c];
+      PetscReal *all = &r->last[c];
+      if (kind == TOTAL || kind == PAIRS) *all += one;
+      if (kind == MEAN) *all += one / r->vesicles;
+      if (kind == WORST && PetscAbsReal(one) > PetscAbsReal(*all)) *all = one;
+      if (kind == FIRST && !v) *all = one;
+    }
+  if (!r->vesicles) r->last[COLUMN_FREQUENCY] = NAN;
 }
 
 /* The columns that vesicles do not have, and the totals of the run. */
@@ -318,26 +313,20 @@ static PetscErrorCode RecordStep(Record *r, Scheme s) {
 
 /* Add a number to the text. NaN is an empty entry. */
 static void RecordAddNumber(Record *r, size_t *used, PetscReal x) {
-  const char *comma = *used ? "," : "";
-  if (PetscIsNanReal(x))
-    *used += (size_t)snprintf(r->text + *used, r->room - *used, "%s", comma);
-  else
-    *used += (size_t)snprintf(r->text + *used, r->room - *used, "%s%.17g", comma, (double)x);
+  *used += (size_t)snprintf(r->text + *used, r->room - *used, "%s", *used ? "," : "");
+  if (!PetscIsNanReal(x)) *used += (size_t)snprintf(r->text + *used, r->room - *used, "%.17g", (double)x);
 }
 
 PetscErrorCode RecordTake(Record *r, Scheme s) {
-  PetscReal *row = r->last;
   size_t used = 0;
   PetscFunctionBeginUser;
   PetscCall(RecordStep(r, s));
   PetscCall(RecordMeasure(r, s));
-  for (PetscInt v = 0; v < r->vesicles; v++) RecordCombine(r->vesicles, r->each + v * COLUMN_COUNT, row);
-  row[COLUMN_INCLINATION] = r->vesicles ? r->each[COLUMN_INCLINATION] : 0;
-  row[COLUMN_FREQUENCY] = r->vesicles ? r->each[COLUMN_FREQUENCY] : NAN;
-  for (int c = 0; c < COLUMN_COUNT; c++) RecordAddNumber(r, &used, row[c]);
+  RecordCombine(r);
+  for (int c = 0; c < COLUMN_COUNT; c++) RecordAddNumber(r, &used, r->last[c]);
   for (PetscInt v = 0; v < r->vesicles; v++)
-    for (int c = 0; c < RecordRepeated(r); c++)
-      RecordAddNumber(r, &used, r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]]);
+    for (int c = 0; c < COLUMN_COUNT; c++)
+      if (RecordRepeats(r, c)) RecordAddNumber(r, &used, r->each[v * COLUMN_COUNT + c]);
   PetscCall(ObstacleRowTake(s, r->solid));
   for (PetscInt k = 0; k < r->solids; k++) RecordAddNumber(r, &used, r->solid[k]);
   for (PetscInt k = 0; k < r->forces->n; k++)

@@ -5,50 +5,52 @@
 #pragma once
 #include "scheme/scheme.h"
 
-/* Columns of series.csv, in order. */
+/* Columns of series.csv, in order, and what they make of the vesicles' numbers: nothing (RUN), a sum of which no
+   vesicle has a column (PAIRS), or the TOTAL, the WORST (largest in magnitude), the MEAN, the FIRST vesicle's (neither
+   a total nor a worst value of angles means anything) or the LEAST of columns that each vesicle has. */
 /* clang-format off */
-#define RECORD_COLUMNS(COLUMN)              \
-  COLUMN(STEP, "step")                      \
-  COLUMN(TIME, "time")                      \
-  COLUMN(DT, "dt")                          \
-  COLUMN(KINETIC, "energy_kinetic")         \
-  COLUMN(BENDING, "energy_bending")         \
-  COLUMN(AREA, "area")                      \
-  COLUMN(LENGTH, "length")                  \
-  COLUMN(AREA_ERROR, "area_error")          \
-  COLUMN(LENGTH_ERROR, "length_error")      \
-  COLUMN(EDGE_RATIO, "edge_ratio")          \
-  COLUMN(DIV, "div_max")                    \
-  COLUMN(SURFACE_DIV, "surface_div_max")    \
-  COLUMN(CENTER_X, "center_x")              \
-  COLUMN(CENTER_Y, "center_y")              \
-  COLUMN(INCLINATION, "inclination")        \
-  COLUMN(FREQUENCY, "frequency")            \
-  COLUMN(TENSION_ITS, "tension_its")        \
-  COLUMN(BENDING_ITS, "bending_its")        \
-  COLUMN(COUPLED_ITS, "coupled_its")        \
-  COLUMN(NSOLVE, "nsolve")                  \
-  COLUMN(WALL, "wall")                      \
-  COLUMN(AREA_SHIFT, "area_shift")          \
-  COLUMN(NORMAL_SPEED, "normal_speed")      \
-  COLUMN(VELOCITY_X, "velocity_x")          \
-  COLUMN(VELOCITY_Y, "velocity_y")          \
-  COLUMN(GRAVITY, "energy_gravity")         \
-  COLUMN(GAP, "gap")                        \
-  COLUMN(CONTACT, "energy_contact")         \
-  COLUMN(VISCOSITY_WALL, "viscosity_wall")  \
-  COLUMN(VISCOSITY, "viscosity")            \
-  COLUMN(NORMAL_WALL, "normal_stress_wall") \
-  COLUMN(NORMAL, "normal_stress")
+#define RECORD_COLUMNS(COLUMN)                   \
+  COLUMN(STEP, "step", RUN)                      \
+  COLUMN(TIME, "time", RUN)                      \
+  COLUMN(DT, "dt", RUN)                          \
+  COLUMN(KINETIC, "energy_kinetic", RUN)         \
+  COLUMN(BENDING, "energy_bending", TOTAL)       \
+  COLUMN(AREA, "area", TOTAL)                    \
+  COLUMN(LENGTH, "length", TOTAL)                \
+  COLUMN(AREA_ERROR, "area_error", WORST)        \
+  COLUMN(LENGTH_ERROR, "length_error", WORST)    \
+  COLUMN(EDGE_RATIO, "edge_ratio", WORST)        \
+  COLUMN(DIV, "div_max", RUN)                    \
+  COLUMN(SURFACE_DIV, "surface_div_max", RUN)    \
+  COLUMN(CENTER_X, "center_x", MEAN)             \
+  COLUMN(CENTER_Y, "center_y", MEAN)             \
+  COLUMN(INCLINATION, "inclination", FIRST)      \
+  COLUMN(FREQUENCY, "frequency", FIRST)          \
+  COLUMN(TENSION_ITS, "tension_its", RUN)        \
+  COLUMN(BENDING_ITS, "bending_its", RUN)        \
+  COLUMN(COUPLED_ITS, "coupled_its", RUN)        \
+  COLUMN(NSOLVE, "nsolve", RUN)                  \
+  COLUMN(WALL, "wall", RUN)                      \
+  COLUMN(AREA_SHIFT, "area_shift", RUN)          \
+  COLUMN(NORMAL_SPEED, "normal_speed", WORST)    \
+  COLUMN(VELOCITY_X, "velocity_x", MEAN)         \
+  COLUMN(VELOCITY_Y, "velocity_y", MEAN)         \
+  COLUMN(GRAVITY, "energy_gravity", TOTAL)       \
+  COLUMN(GAP, "gap", LEAST)                      \
+  COLUMN(CONTACT, "energy_contact", PAIRS)       \
+  COLUMN(VISCOSITY_WALL, "viscosity_wall", RUN)  \
+  COLUMN(VISCOSITY, "viscosity", RUN)            \
+  COLUMN(NORMAL_WALL, "normal_stress_wall", RUN) \
+  COLUMN(NORMAL, "normal_stress", RUN)
 /* clang-format on */
-#define RECORD_ENUM(id, name) COLUMN_##id,
+#define RECORD_ENUM(id, name, kind) COLUMN_##id,
 enum { RECORD_COLUMNS(RECORD_ENUM) COLUMN_COUNT };
 PETSC_EXTERN const char *const SeriesColumns[COLUMN_COUNT];
 
-/* Columns that each vesicle has of its own; -1 past the last. With at most RECORD_FEW vesicles these columns are in
-   series.csv with a suffix for each vesicle, with more vesicles they are in vesicles.h5. */
+/* RecordIsOwn - whether each vesicle has a column of its own. With at most RECORD_FEW vesicles these columns are in
+   series.csv with a suffix for each vesicle, with more vesicles they are in vesicles.h5. Not collective. */
 #define RECORD_FEW 40
-PETSC_EXTERN const int RecordVesicleColumns[];
+PETSC_EXTERN PetscBool RecordIsOwn(int column);
 
 /* Places of a force's energy other than one of RECORD_COLUMNS: a column of its own behind all others, or none. */
 enum { RECORD_NOWHERE = -2, RECORD_LAST = -1 };

@@ -1,7 +1,7 @@
+/* -restart: a checkpoint is checked, compared with the scene, and read into the scheme. */
 #include "base/agree.h"
 #include "base/version.h"
 #include "output/checkpoint.h"
-#include "output/restart.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -11,8 +11,8 @@ static PetscErrorCode RestartFormat(Scene scene) {
   PetscInt format = 0;
   PetscBool failed;
   PetscFunctionBeginUser;
-  PetscCall(H5FileOpen(scene->comm, scene->output.restart, PETSC_FALSE, &file));
-  PetscCall(H5GetInts(&file, "format", 1, &format));
+  PetscCall(H5FileOpen(scene->comm, scene->output.restart, H5_READ, &file));
+  PetscCall(H5Get(&file, "format", H5_INT, 1, &format));
   PetscCall(H5FileFailed(&file, &failed));
   H5FileClose(&file);
   PetvesCheck(failed || format == CHECKPOINT_FORMAT, scene->comm,
@@ -169,10 +169,6 @@ static PetscErrorCode RestartState(Scheme s, H5File *file, const CheckpointNumbe
   PetscCall(RestartLevel(s, file, &times.plan.level));
   PetscCall(PetscArraycpy(times.dt_earlier, n->dt_earlier, SCHEME_PAST));
   SchemeSetTimes(s, &times);
-  PetvesCheck(n->step_order > 0 && n->step_guess > 0, s->scene->comm,
-              "-restart %s: its step_order is %" PetscInt_FMT ", its step_guess is %" PetscInt_FMT
-              "; allowed: at least 1",
-              s->scene->output.restart, n->step_order, n->step_guess);
   for (PetscInt j = 0; j < s->past; j++)
     PetvesCheck(n->dt_earlier[j] >= 0 && n->dt_earlier[j] <= 1e300 && (j == s->past - 1 || n->dt_earlier[j] > 0),
                 s->scene->comm, "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
@@ -188,7 +184,7 @@ static PetscErrorCode RestartState(Scheme s, H5File *file, const CheckpointNumbe
 /* Read all of the open checkpoint; memory[] is what the solvers have kept from earlier steps. */
 static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, PetscInt *frames, PetscReal memory[]) {
   const PetscInt numbers = SchemeMemorySize(s);
-  CheckpointNumbers n = {0};
+  CheckpointNumbers n = {.step_order = 1, .step_guess = 1}; /* allowed, where nothing can be read */
   PetscBool plain;
   PetscFunctionBeginUser;
   PetscCall(H5CheckLinks(file, &plain));
@@ -216,7 +212,7 @@ PetscErrorCode RestartRead(Scheme s, Record *record, PetscInt *frames) {
   PetscFunctionBeginUser;
   PetscCall(RestartFile(s->scene));
   PetscCall(PetscMalloc1(SchemeMemorySize(s), &memory));
-  PetscCall(H5FileOpen(s->scene->comm, s->scene->output.restart, PETSC_FALSE, &file));
+  PetscCall(H5FileOpen(s->scene->comm, s->scene->output.restart, H5_READ, &file));
   error = RestartReadAll(s, &file, record, frames, memory);
   H5FileClose(&file);
   if (!error) error = SchemeRecall(s, memory);

@@ -20,8 +20,10 @@ PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Copy the file up to the row of `step` to the temporary name; what is wrong with the file, or "". */
-static const char *SeriesCopyRows(const char path[], const char temporary[], const char header[], PetscInt step) {
+/* Copy the file up to the row of `step` to the temporary name and count the rows; what is wrong with the file, or "".
+ */
+static const char *SeriesCopyRows(const char path[], const char temporary[], const char header[], PetscInt step,
+                                  PetscInt *rows) {
   FILE *in = fopen(path, "r"), *out = in ? FileNew(temporary) : NULL;
   char *line = NULL;
   const char *wrong = !in ? "cannot be read" : (!out ? "cannot be written" : NULL);
@@ -37,7 +39,8 @@ static const char *SeriesCopyRows(const char path[], const char temporary[], con
       wrong = "lacks the checkpoint's step";
     else if (fputs(line, out) < 0)
       wrong = "cannot be written";
-    if (n) last = wrong ? last : (PetscInt)atol(line);
+    if (n && !wrong) last = (PetscInt)atol(line);
+    *rows = n;
   }
   free(line);
   if (in) fclose(in);
@@ -47,14 +50,16 @@ static const char *SeriesCopyRows(const char path[], const char temporary[], con
   return wrong ? wrong : "";
 }
 
-PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscInt step, const char restart[]) {
+PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscInt step, const char restart[],
+                         PetscInt *rows) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], wrong[64] = "";
   PetscFunctionBeginUser;
   s->folder = folder;
   FolderPath(folder, SERIES, path);
   FolderPath(folder, SERIES_TEMPORARY, temporary);
-  if (!folder->rank) PetscCall(PetscStrncpy(wrong, SeriesCopyRows(path, temporary, header, step), sizeof(wrong)));
+  if (!folder->rank) PetscCall(PetscStrncpy(wrong, SeriesCopyRows(path, temporary, header, step, rows), sizeof(wrong)));
   PetscCallMPI(MPI_Bcast(wrong, sizeof(wrong), MPI_CHAR, 0, folder->comm));
+  PetscCallMPI(MPI_Bcast(rows, 1, MPIU_INT, 0, folder->comm));
   PetvesCheck(!*wrong, folder->comm,
               "-restart %s: %s %s (step %" PetscInt_FMT "); allowed: the file as the run left it, or a new -output_dir",
               restart, path, wrong, step);

@@ -12,11 +12,12 @@ typedef struct {
 } Series;
 
 /* SeriesPrepare - a new file of the header and, unless it is "", a first row. SeriesCut - a copy of the file in the
-   folder, up to the row of `step`; stops with one line, which names `restart`, when the file has other columns or lacks
-   the row. SeriesOpen - the prepared file takes the name series.csv and is open for further rows. Collective. */
+   folder, up to the row of `step`, and the number of these rows; stops with one line, which names `restart`, when the
+   file has other columns or lacks the row. SeriesOpen - the prepared file takes the name series.csv and is open for
+   further rows. Collective. */
 PETSC_EXTERN PetscErrorCode SeriesPrepare(Series *series, Folder *folder, const char header[], const char row[]);
 PETSC_EXTERN PetscErrorCode SeriesCut(Series *series, Folder *folder, const char header[], PetscInt step,
-                                      const char restart[]);
+                                      const char restart[], PetscInt *rows);
 PETSC_EXTERN PetscErrorCode SeriesOpen(Series *series);
 
 /* SeriesWrite - add a row; not collective. SeriesFlush - hand the rows to the system and, with sync, put them on the

@@ -12,44 +12,32 @@
 /* Seconds between progress lines. */
 #define PROGRESS_SECONDS 2
 
-void ProgressStart(Progress *p, MPI_Comm comm, PetscReal t) {
-  p->comm = comm;
-  p->from = t;
-  (void)MPI_Comm_rank(comm, &p->rank);
-  (void)PetscTime(&p->start);
-  p->printed = p->start;
+PetscErrorCode SummaryProgress(Summary *s, PetscBool force) {
+  const State *q = &s->scheme->state;
+  const PetscReal t_end = s->scheme->scene->time.end;
+  PetscLogDouble now, left;
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&now));
+  if (!force && now - s->printed < PROGRESS_SECONDS) PetscFunctionReturn(PETSC_SUCCESS);
+  s->printed = now;
+  left = q->t > s->from ? (now - s->start) * PetscMax(0, t_end - q->t) / (q->t - s->from) : 0;
+  PetscCall(PetvesSay(s->folder->comm, "step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step,
+                      (double)q->t, t_end > 0 ? 100 * PetscMin(1, (double)(q->t / t_end)) : 100, (double)left));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal ProgressSeconds(const Progress *p) {
-  PetscLogDouble now;
-  (void)PetscTime(&now);
-  return now - p->start;
-}
-
-void ProgressLine(Progress *p, const State *q, PetscReal t_end, PetscBool force) {
-  PetscLogDouble now;
-  PetscReal left;
-  if (p->rank || PetvesIsQuiet()) return;
-  (void)PetscTime(&now);
-  if (!force && now - p->printed < PROGRESS_SECONDS) return;
-  p->printed = now;
-  left = q->t > p->from ? (now - p->start) * PetscMax(0, t_end - q->t) / (q->t - p->from) : 0;
-  printf("step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step, (double)q->t,
-         t_end > 0 ? 100 * PetscMin(1, (double)(q->t / t_end)) : 100, (double)left);
-  fflush(stdout);
-}
-
-void DiskUsageCount(const Folder *folder, PetscInt frames, PetscInt checkpoints, DiskUsage *usage) {
+/* Sizes of the files in the folder, on rank 0. */
+static void SummaryCountBytes(Summary *s) {
   static const char *const names[] = {"run.h5", "series.csv", "run.xmf", "vesicles.h5", "checkpoint.h5"};
   struct stat status;
-  *usage = (DiskUsage){.frames = frames};
-  for (PetscInt k = 0; k < 4 + checkpoints && !folder->rank; k++) {
+  s->bytes = s->bytes_h5 = 0;
+  for (PetscInt k = 0; k < 4 + s->scheme->scene->output.checkpoint_keep && !s->folder->rank; k++) {
     char name[64], path[PETSC_MAX_PATH_LEN];
     (void)(k < 5 ? PetscStrncpy(name, names[k], sizeof(name))
                  : PetscSNPrintf(name, sizeof(name), "checkpoint_%d.h5", (int)k - 4));
-    FolderPath(folder, name, path);
-    if (!stat(path, &status)) usage->all += (double)status.st_size;
-    if (!k) usage->h5 = usage->all;
+    FolderPath(s->folder, name, path);
+    if (!stat(path, &status)) s->bytes += (double)status.st_size;
+    if (!k) s->bytes_h5 = s->bytes;
   }
 }
 
@@ -90,9 +78,12 @@ static PetscErrorCode ResolvedPrint(FILE *f, const void *what) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SummaryResolved(Folder *folder, Scheme scheme) {
+PetscErrorCode SummaryBegin(Summary *s) {
   PetscFunctionBeginUser;
-  PetscCall(FolderWriteText(folder, "resolved.opts", ResolvedPrint, scheme));
+  PetscCall(FolderWriteText(s->folder, "resolved.opts", ResolvedPrint, s->scheme));
+  PetscCall(PetscTime(&s->start));
+  s->printed = s->start;
+  s->from = s->scheme->state.t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,21 +107,21 @@ static PetscErrorCode TablePrintVesicles(MPI_Comm comm, const Record *record, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SummaryTable(const Folder *folder, const Record *record, const DiskUsage *usage, PetscReal seconds,
-                            const char reason[]) {
-  const PetscReal *r = record->last;
+static PetscErrorCode TablePrint(const Summary *s, const char reason[]) {
+  const MPI_Comm comm = s->folder->comm;
+  const PetscReal *r = s->record->last;
   const PetscInt step = (PetscInt)r[COLUMN_STEP], steps = PetscMax(step, 1);
   PetscFunctionBeginUser;
-  PetscCall(PetvesSay(folder->comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason,
-                      (double)r[COLUMN_TIME], step, (double)seconds));
-  if (record->vesicles) PetscCall(TablePrintVesicles(folder->comm, record, steps));
-  PetscCall(PetvesSay(folder->comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
-  PetscCall(PetvesSay(folder->comm, "  fast solves a step            %.1f\n", (double)record->solves / (double)steps));
-  PetscCall(PetvesSay(folder->comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
+  PetscCall(PetvesSay(comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason, (double)r[COLUMN_TIME],
+                      step, (double)s->seconds));
+  if (s->record->vesicles) PetscCall(TablePrintVesicles(comm, s->record, steps));
+  PetscCall(PetvesSay(comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
+  PetscCall(PetvesSay(comm, "  fast solves a step            %.1f\n", (double)s->record->solves / (double)steps));
+  PetscCall(PetvesSay(comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
                       (double)PhaseSeconds(PHASE_FAST_SOLVE), (double)PhaseSeconds(PHASE_STEP),
                       (double)PhaseSeconds(PHASE_OUTPUT)));
-  PetscCall(PetvesSay(folder->comm, "  files in %s: %.3g MB, %.3g MB of them run.h5 with %" PetscInt_FMT " frames\n",
-                      folder->path, usage->all / 1e6, usage->h5 / 1e6, usage->frames));
+  PetscCall(PetvesSay(comm, "  files in %s: %.3g MB, %.3g MB of them run.h5 with %" PetscInt_FMT " frames\n",
+                      s->folder->path, s->bytes / 1e6, s->bytes_h5 / 1e6, s->frames));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,16 +192,6 @@ static void JsonPrintRow(FILE *f, const Record *record) {
   fprintf(f, "},\n");
 }
 
-/* What summary.json is printed from. */
-typedef struct {
-  Scheme scheme;
-  const Record *record;
-  const DiskUsage *usage;
-  const char *reason;
-  PetscReal seconds;
-  PetscMPIInt ranks;
-} Summary;
-
 /* Print when and where the run ended. */
 static void JsonPrintOrigin(FILE *f) {
   char host[128] = "", date[32] = "";
@@ -227,6 +208,8 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   const Summary *s = what;
   const Record *r = s->record;
   struct rusage usage;
+  int ranks;
+  (void)MPI_Comm_size(s->folder->comm, &ranks);
   fprintf(f, "{\n  \"reason\": ");
   JsonPrintString(f, s->reason);
   JsonPrintRow(f, r);
@@ -239,9 +222,9 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   (void)getrusage(RUSAGE_SELF, &usage);
   fprintf(f, "},\n  \"memory_mib_rank_0\": %.1f,\n", (double)usage.ru_maxrss / 1024);
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)s->scheme->membrane->layout->M,
-          (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], s->ranks);
-  fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->usage->frames,
-          s->usage->all, s->usage->h5);
+          (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], ranks);
+  fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->frames, s->bytes,
+          s->bytes_h5);
   JsonPrintRatios(f, s->scheme->scene);
   JsonPrintInertia(f, s->scheme->scene, r->cfl_max);
   JsonPrintWarnings(f, &s->scheme->warnings);
@@ -251,11 +234,16 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode SummaryWrite(Folder *folder, Scheme scheme, const Record *record, const DiskUsage *usage,
-                            PetscReal seconds, const char reason[]) {
-  Summary summary = {scheme, record, usage, reason, seconds, 1};
+PetscErrorCode SummaryEnd(Summary *s, PetscInt frames, const char reason[], const char failure[]) {
+  PetscLogDouble now;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(folder->comm, &summary.ranks));
-  PetscCall(FolderWriteText(folder, "summary.json", JsonPrint, &summary));
+  PetscCall(PetscTime(&now));
+  s->seconds = now - s->start;
+  s->frames = frames;
+  s->reason = failure ? failure : reason;
+  SummaryCountBytes(s);
+  PetscCall(FolderWriteText(s->folder, "summary.json", JsonPrint, s));
+  PetscCall(SummaryProgress(s, PETSC_TRUE));
+  PetscCall(TablePrint(s, failure ? "stopped" : reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,51 +6,35 @@ static PetscErrorCode VesicleFileDescribe(Scheme s, H5File *f) {
   return PETSC_SUCCESS;
 }
 
-/* /step, then RecordVesicleColumns. */
-static AppendedKind VesicleFileKind(Scheme s) {
+PetscErrorCode VesicleFileOpen(AppendedFile *f, Folder *folder, Scheme s, PetscInt rows, const char restart[]) {
   AppendedKind kind = {.name = "vesicles.h5", .entries = "rows", .scheme = s, .describe = VesicleFileDescribe};
-  char path[APPENDED_NAME];
-  AppendedAddSeries(&kind, "/step", 0, 1, PETSC_FALSE);
-  for (int c = 0; RecordVesicleColumns[c] >= 0; c++) {
-    (void)snprintf(path, sizeof(path), "/%s", SeriesColumns[RecordVesicleColumns[c]]);
-    AppendedAddSeries(&kind, path, s->membrane->layout->bodies, 1, PETSC_FALSE);
-  }
-  return kind;
-}
-
-PetscErrorCode VesicleFileCreate(AppendedFile *f, Folder *folder, Scheme scheme) {
-  const AppendedKind kind = VesicleFileKind(scheme);
+  const PetscInt vesicles = s->membrane->layout->bodies;
   PetscFunctionBeginUser;
-  if (scheme->membrane->layout->bodies > RECORD_FEW) PetscCall(AppendedCreate(f, folder, &kind));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode VesicleFileGoOn(AppendedFile *f, Folder *folder, Scheme scheme, PetscInt step, const char restart[]) {
-  const AppendedKind kind = VesicleFileKind(scheme);
-  PetscReal first = 0, last = -1;
-  PetscInt length, rows;
-  PetscFunctionBeginUser;
-  if (scheme->membrane->layout->bodies <= RECORD_FEW) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AppendedOpen(f, folder, &kind, PETSC_MAX_INT, &length));
-  if (length) PetscCall(H5ReadArray(&f->file, "/step", 0, 1, &first));
-  rows = step - (PetscInt)first + 1; /* first is not 0 in a folder that began with a restart */
-  if (length >= rows && rows > 0) PetscCall(H5ReadArray(&f->file, "/step", rows - 1, 1, &last));
-  if (last != step) length = PetscMin(length, rows - 1);
-  PetscCall(AppendedGoOn(f, length, rows, restart));
+  if (vesicles <= RECORD_FEW) PetscFunctionReturn(PETSC_SUCCESS);
+  kind.series[kind.n++] = (AppendedSeries){"/step", 0, 1};
+  for (int c = 0; c < COLUMN_COUNT; c++)
+    if (RecordIsOwn(c)) {
+      (void)snprintf(kind.series[kind.n].path, APPENDED_NAME, "/%s", SeriesColumns[c]);
+      kind.series[kind.n].rows = vesicles;
+      kind.series[kind.n++].columns = 1;
+    }
+  PetscCall(AppendedOpen(f, folder, &kind, rows, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode VesicleFileWrite(AppendedFile *f, const Record *r, PetscInt step, PetscReal time) {
-  const PetscReal number = step;
+  PetscReal number = step;
+  PetscInt k = 0;
   PetscReal *values;
   PetscFunctionBeginUser;
   if (!f->open) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(r->vesicles, &values));
-  AppendedSet(f, 0, &number);
-  for (int c = 0; RecordVesicleColumns[c] >= 0; c++) {
-    for (PetscInt v = 0; v < r->vesicles; v++) values[v] = r->each[v * COLUMN_COUNT + RecordVesicleColumns[c]];
-    AppendedSet(f, c + 1, values);
-  }
+  AppendedSet(f, k++, &number);
+  for (int c = 0; c < COLUMN_COUNT; c++)
+    if (RecordIsOwn(c)) {
+      for (PetscInt v = 0; v < r->vesicles; v++) values[v] = r->each[v * COLUMN_COUNT + c];
+      AppendedSet(f, k++, values);
+    }
   PetscCall(PetscFree(values));
   PetscCall(AppendedAdd(f, time));
   PetscFunctionReturn(PETSC_SUCCESS);

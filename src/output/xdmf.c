@@ -8,6 +8,9 @@
 /* The number of frames has a fixed width, so that it can be replaced where it stands. */
 #define XDMF_HEAD "<?xml version=\"1.0\"?>\n<!DOCTYPE Xdmf [<!ENTITY frames \""
 #define XDMF_COUNT_WIDTH 10
+#define XDMF_OPENING                                                                                                   \
+  XDMF_HEAD "         0\">]>\n<Xdmf Version=\"2.0\"><Domain>\n"                                                        \
+            "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n"
 #define XDMF_CLOSING "</Grid>\n</Domain></Xdmf>\n"
 
 /* The entry of one frame in a series of run.h5: n rows of `columns` columns from `column` on. */
@@ -122,37 +125,21 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time) {
   fprintf(f, "</Grid>\n");
 }
 
-/* What XdmfGoOn prints; last and end become the places where the last frame begins and ends. */
-typedef struct {
-  Scheme scheme;
-  PetscInt frames;
-  const PetscReal *times; /* [frames] */
-  off_t *last, *end;
-} XdmfDocument;
-
-static PetscErrorCode PrintDocument(FILE *f, const void *what) {
-  const XdmfDocument *d = what;
-  fprintf(f, XDMF_HEAD "%*d\">]>\n<Xdmf Version=\"2.0\"><Domain>\n", XDMF_COUNT_WIDTH, (int)d->frames);
-  fprintf(f, "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-  for (PetscInt t = 0; t < d->frames; t++) {
-    *d->last = ftello(f);
-    PrintFrame(d->scheme, f, t, d->times[t]);
-  }
-  *d->end = ftello(f);
-  fprintf(f, XDMF_CLOSING);
+static PetscErrorCode PrintEmpty(FILE *f, const void *none) {
+  fprintf(f, XDMF_OPENING XDMF_CLOSING);
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode XdmfGoOn(Xdmf *x, PetscInt frames, const PetscReal times[]) {
-  const XdmfDocument document = {x->scheme, frames, times, &x->last, &x->end};
+/* Make a document without frames. */
+static PetscErrorCode XdmfBegin(Xdmf *x) {
   char path[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
-  PetscCall(FolderWriteText(x->folder, "run.xmf", PrintDocument, &document));
+  PetscCall(FolderWriteText(x->folder, "run.xmf", PrintEmpty, NULL));
   FolderPath(x->folder, "run.xmf", path);
   if (!x->folder->rank) x->file = open(path, O_WRONLY);
   PetscCall(FolderCheck(x->folder, x->file >= 0, "run.xmf"));
   FolderWatch(x->folder, "run.xmf");
-  x->frames = frames;
+  x->end = (off_t)strlen(XDMF_OPENING);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -173,7 +160,8 @@ static PetscBool XdmfOverwrite(int file, off_t place, const char text[], size_t 
   return PETSC_FALSE;
 }
 
-/* Rank 0's part of XdmfWrite. The number of frames is written first: run.h5 has as many frames already. */
+/* Write a frame, the next one or the last one again, on rank 0. The number of frames is written first: run.h5 has as
+ * many frames already. */
 static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time) {
   const off_t place = frame < x->frames ? x->last : x->end;
   char count[XDMF_COUNT_WIDTH + 8], *text = NULL;
@@ -195,16 +183,17 @@ static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time) {
   return done;
 }
 
-PetscErrorCode XdmfWrite(Xdmf *x, PetscInt frame, PetscReal time) {
+PetscErrorCode XdmfWrite(Xdmf *x, AppendedFile *frames) {
+  PetscBool done = PETSC_TRUE;
+  PetscReal time = 0;
   PetscFunctionBeginUser;
-  PetscCheck(frame == x->frames || frame == x->frames - 1, x->folder->comm, PETSC_ERR_PLIB,
-             "frame %" PetscInt_FMT " of run.xmf after %" PetscInt_FMT, frame, x->frames);
-  if (!x->frames) {
-    PetscCall(XdmfGoOn(x, 1, &time));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!x->end) PetscCall(XdmfBegin(x));
+  for (PetscInt t = PetscMin(x->frames, frames->count - 1); t < frames->count; t++) {
+    PetscCall(H5ReadArray(&frames->file, "/time", t, 1, &time));
+    if (done && !x->folder->rank) done = XdmfAppend(x, t, time);
+    x->frames = t + 1;
   }
-  PetscCall(FolderCheck(x->folder, x->folder->rank || XdmfAppend(x, frame, time), "run.xmf"));
-  x->frames = frame + 1;
+  PetscCall(FolderCheck(x->folder, done, "run.xmf"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

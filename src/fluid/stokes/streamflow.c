@@ -146,37 +146,6 @@ PetscErrorCode StreamFlowsVelocity(StreamFlows s, Vec flow, Vec w) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Modes of chi/h of a row: chi/h is minus the sum of v along the row, without a mean where x is periodic. */
-static void FlowRow(StreamFlows s, const PetscScalar v[], PetscReal mean, PetscScalar chi[], PetscScalar modes[]) {
-  const PetscInt n = s->grid->n[0];
-  for (PetscInt i = 0; i < n; i++) chi[i] = (i ? chi[i - 1] : 0) - (v[i] - mean);
-  RowTransformForward(s->t, chi);
-  for (PetscInt k = s->grid->wall[0] ? 0 : 2; k < s->t->width; k++) modes[k] = s->t->scale[k] * s->t->modes[k];
-}
-
-PetscErrorCode StreamFlowsOf(StreamFlows s, Vec w, Vec flow) {
-  const Grid g = s->grid;
-  const PetscInt n = g->n[0];
-  const PetscScalar *a;
-  PetscScalar *b, *chi;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &chi));
-  PetscCall(VecSet(flow, 0));
-  PetscCall(VecGetArrayRead(w, &a));
-  PetscCall(VecGetArray(flow, &b));
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
-    PetscScalar *row = b + j * s->each;
-    if (!g->wall[0]) row[s->width] = StreamRowSum(n, a + GridRowStart(g, FIELD_U, j)) / (PetscReal)n;
-    if (j >= s->rows) break;
-    if (!g->wall[0] && !g->wall[1]) row[s->width + 1] = StreamRowSum(n, a + GridRowStart(g, FIELD_V, j)) / (PetscReal)n;
-    FlowRow(s, a + GridRowStart(g, FIELD_V, j), row[s->width + 1], chi, row);
-  }
-  PetscCall(VecRestoreArray(flow, &b));
-  PetscCall(VecRestoreArrayRead(w, &a));
-  PetscCall(PetscFree(chi));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode StreamFlowsSquare(StreamFlows s, Vec flow, PetscReal *square) {
   const StreamPast one = {.count = 1, .weight = {1}, .flow = {flow}};
   PetscFunctionBeginUser;

@@ -57,8 +57,7 @@ PETSC_EXTERN const PetscReal *StreamFlowsRow(StreamFlows flows, PetscInt j);
 /* StreamFlowsMean - mean of the sum's u in local row j of u, or (comp 1) of its v in row j of v. Not collective. */
 PETSC_EXTERN PetscReal StreamFlowsMean(StreamFlows flows, PetscInt j, int comp);
 
-/* StreamFlowsVelocity - w = the velocity of a flow. StreamFlowsOf - the flow of a velocity w without divergence.
-   StreamFlowsSquare - SUM u^2 + v^2 over all faces (velocity^2). Collective. */
+/* StreamFlowsVelocity - w = the velocity of a flow. StreamFlowsSquare - SUM u^2 + v^2 over all faces
+   (velocity^2). Collective. */
 PETSC_EXTERN PetscErrorCode StreamFlowsVelocity(StreamFlows flows, Vec flow, Vec w);
-PETSC_EXTERN PetscErrorCode StreamFlowsOf(StreamFlows flows, Vec w, Vec flow);
 PETSC_EXTERN PetscErrorCode StreamFlowsSquare(StreamFlows flows, Vec flow, PetscReal *square);

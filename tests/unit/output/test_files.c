@@ -24,8 +24,7 @@ static PetscErrorCode CheckTexts(void) {
   PetscCall(Scratch("texts.h5", path));
   PetscCall(PetscMalloc1(lengths[n - 1] + 1, &text));
   for (int pass = 0; pass < 2; pass++) {
-    PetscCall(pass ? H5FileOpen(PETSC_COMM_WORLD, path, PETSC_FALSE, &file)
-                   : H5FileCreate(PETSC_COMM_WORLD, path, &file));
+    PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, pass ? H5_READ : H5_NEW, &file));
     for (int k = 0; k < n; k++) {
       for (size_t i = 0; i < lengths[k]; i++) text[i] = (char)('a' + (i * i + 7 * i + (size_t)k) % 26);
       text[lengths[k]] = 0;
@@ -88,13 +87,13 @@ static PetscErrorCode CheckPlaces(void) {
   H5File file;
   PetscFunctionBeginUser;
   PetscCall(Scratch("places.h5", path));
-  PetscCall(H5FileCreate(PETSC_COMM_WORLD, path, &file));
+  PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_NEW, &file));
   H5CreateSeries(&file, "/a/one", PETSC_FALSE, 2, size);
   H5CreateSeries(&file, "/a/two", PETSC_FALSE, 1, size);
   for (PetscInt t = 0; t < frames; t++) {
     for (int k = 0; k < 35; k++) values[k] = t + k / 64.0;
-    H5WriteArray(&file, "/a/one", t, 35, values);
-    H5WriteArray(&file, "/a/two", t, 5, values);
+    H5Transfer(&file, PETSC_TRUE, "/a/one", t, 35, values);
+    H5Transfer(&file, PETSC_TRUE, "/a/two", t, 5, values);
     H5FileFlush(&file);
   }
   for (int pass = 0; pass < 2; pass++) {
@@ -115,7 +114,7 @@ static PetscErrorCode CheckPlaces(void) {
       CHECK(read[34] == ask[k] + 34 / 64.0, "and frame %d of the other series is as written", (int)ask[k]);
     }
     H5FileClose(&file);
-    if (!pass) PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, PETSC_FALSE, &file));
+    if (!pass) PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_READ, &file));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
