@@ -81,12 +81,9 @@ static PetscBool IndexRead(FILE *index, PetscInt n, PetscInt *entry, PetscReal *
 static PetscBool EntryRead(int old, PetscInt n, PetscBool single, off_t place, PetscReal values[]) {
   const size_t bytes = (size_t)n * (single ? sizeof(float) : sizeof(*values));
   if (pread(old, values, bytes, place) != (ssize_t)bytes) return PETSC_FALSE;
-  for (PetscInt i = n - 1; i >= 0 && single; i--) { /* from the last number on: the array holds both precisions */
-    float x;
-    memcpy(&x, (const char *)values + (size_t)i * sizeof(x), sizeof(x));
-    values[i] = x;
-  }
-  return PETSC_TRUE;
+  return !single || H5Tconvert(H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, (size_t)n, values, NULL, H5P_DEFAULT) >= 0
+             ? PETSC_TRUE
+             : PETSC_FALSE;
 }
 
 /* Copy the first `most` entries into the new file `f`, on rank 0; copied: the number of entries that could be read. An

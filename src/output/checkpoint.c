@@ -80,23 +80,24 @@ PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme s, PetscI
 }
 
 PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *n) {
+  SchemeTimes *times = &n->times;
   const struct {
     const char *name;
     PetscReal least, most; /* allowed; most 0: all */
     PetscInt *whole;
     PetscReal *real;
     PetscInt count; /* 0: one number */
-  } all[] = {{"step", 0, 1e9, &n->step},
-             {"past", 0, SCHEME_PAST, &n->past},
-             {"step_level", -1000, 1000, &n->step_level},
+  } all[] = {{"step", 0, 1e9, &times->step},
+             {"past", 0, SCHEME_PAST, &times->past},
+             {"step_level", -1000, 1000, &times->plan.level},
              {"frames", 0, 1e9, &n->frames},
-             {"time", 0, 1e300, NULL, &n->time},
-             {"dt", 0, 1e300, NULL, &n->dt},
-             {"dt_last", 0, 1e300, NULL, &n->dt_last},
-             {"step_order", 1, BDF_MOST, &n->step_order},
-             {"step_guess", 1, BDF_STATES, &n->step_guess},
+             {"time", 0, 1e300, NULL, &times->t},
+             {"dt", 0, 1e300, NULL, &times->dt},
+             {"dt_last", 0, 1e300, NULL, &times->dt_last},
+             {"step_order", 1, BDF_MOST, &times->plan.order},
+             {"step_guess", 1, BDF_STATES, &times->plan.guess},
              {"totals", 0, 0, n->totals, NULL, 4},
-             {"dt_earlier", 0, 0, NULL, n->dt_earlier, SCHEME_PAST}};
+             {"dt_earlier", 0, 0, NULL, times->dt_earlier, SCHEME_PAST}};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
     const PetscInt count = PetscMax(1, all[k].count);
@@ -111,9 +112,9 @@ PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNu
                 "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", file->path, all[k].name,
                 (double)value, (double)all[k].least, (double)all[k].most);
   }
-  PetvesCheck(write || (n->frames <= n->step + 1 && (n->step == 0 || n->dt_last > 0)), file->comm,
+  PetvesCheck(write || (n->frames <= times->step + 1 && (times->step == 0 || times->dt_last > 0)), file->comm,
               "-restart %s: it has %g frames and a last step of %g at step %g; allowed: a checkpoint.h5 of petves",
-              file->path, (double)n->frames, (double)n->dt_last, (double)n->step);
+              file->path, (double)n->frames, (double)times->dt_last, (double)times->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -245,19 +246,14 @@ void CheckpointClear(Folder *folder) {
 static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r, PetscInt frames) {
   const PetscInt format = CHECKPOINT_FORMAT, numbers = SchemeMemorySize(s);
   const State *q = &s->state;
-  CheckpointNumbers n = {.step = q->step,
-                         .past = s->past,
-                         .step_level = s->policy.adaptive ? s->plan.level : 0,
-                         .step_order = s->plan.order,
-                         .step_guess = s->plan.guess,
+  CheckpointNumbers n = {.times = {.step = q->step, .past = s->past, .t = q->t, .dt = q->dt, .dt_last = q->dt_last},
                          .frames = frames,
-                         .totals = {r->solves, r->tension, r->bending, r->coupled},
-                         .time = q->t,
-                         .dt = q->dt,
-                         .dt_last = q->dt_last};
+                         .totals = {r->solves, r->tension, r->bending, r->coupled}};
   PetscReal *memory;
   PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < s->past; j++) n.dt_earlier[j] = s->old[j].dt_last;
+  n.times.plan = (StepPlan){
+      .level = s->policy.adaptive ? s->plan.level : 0, .order = s->plan.order, .guess = s->plan.guess};
+  for (PetscInt j = 0; j < s->past; j++) n.times.dt_earlier[j] = s->old[j].dt_last;
   H5Put(file, "format", H5_INT, 1, &format);
   PetscCall(CheckpointMoveNumbers(file, PETSC_TRUE, &n));
   H5PutText(file, "series_row", r->text);

@@ -19,10 +19,9 @@
 
 /* The numbers of a checkpoint. */
 typedef struct {
-  PetscInt step, past, step_level, step_order, step_guess; /* state, states before it, step-size control */
-  PetscInt frames;                                         /* scheduled frames in run.h5 */
+  SchemeTimes times;
+  PetscInt frames;    /* scheduled frames in run.h5 */
   PetscInt totals[4]; /* sums over the columns of series.csv: solves, tension, bending, coupled */
-  PetscReal time, dt, dt_last, dt_earlier[SCHEME_PAST];
 } CheckpointNumbers;
 
 typedef struct {

@@ -40,16 +40,6 @@ static void ObstacleRowName(const SceneObstacles *o, PetscInt k, char name[RECOR
                    (int)((k - OBSTACLE_TOTALS) / ObstacleEach(o) + 1));
 }
 
-/* The columns of one obstacle. */
-static void ObstacleTake(Scheme s, PetscInt b, const ObstacleLoad *load, PetscReal values[]) {
-  const BodyPose pose = MotionPose(&s->coupling->bodies->obstacles->motion[b], s->state.t);
-  values[2] = load->torque;
-  for (int c = 0; c < 2; c++) values[c] = load->force[c];
-  if (!s->scene->obstacles.moving) return;
-  values[5] = pose.angle;
-  for (int c = 0; c < 2; c++) values[3 + c] = pose.center[c];
-}
-
 /* to += scale (force and torque, about c, of a load at a place). The nearest images count. */
 static void ObstacleAddLoad(Grid g, PetscReal scale, const ObstacleLoad *from, const PetscReal place[2],
                             const PetscReal c[2], ObstacleLoad *to) {
@@ -140,9 +130,12 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
   values[0] = drive.pressure_drop;
   values[1] = drive.flux;
   for (PetscInt b = 0; b < curves; b++) {
-    for (int c = 0; c < 2; c++) values[2 + c] += load[b].force[c];
-    if (count > OBSTACLE_TOTALS)
-      ObstacleTake(s, b, &load[b], values + OBSTACLE_TOTALS + ObstacleEach(&s->scene->obstacles) * b);
+    const BodyPose pose = MotionPose(&o->motion[b], s->state.t);
+    const PetscReal own[] = {load[b].force[0], load[b].force[1], load[b].torque,
+                             pose.center[0],   pose.center[1],   pose.angle}; /* the last three where obstacles move */
+    const PetscInt each = ObstacleEach(&s->scene->obstacles);
+    for (int c = 0; c < 2; c++) values[2 + c] += own[c];
+    if (count > OBSTACLE_TOTALS) PetscCall(PetscArraycpy(values + OBSTACLE_TOTALS + each * b, own, each));
   }
   PetscCall(PetscFree(load));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -162,17 +162,16 @@ static PetscErrorCode RestartRecord(Scheme s, H5File *file, const PetscInt total
 
 /* The present state and those before it. dt_earlier: the steps that led to the earlier states; to each but the first
    state of a run there was one. */
-static PetscErrorCode RestartState(Scheme s, H5File *file, const CheckpointNumbers *n) {
-  SchemeTimes times = {.step = n->step, .past = n->past, .t = n->time, .dt = n->dt, .dt_last = n->dt_last};
+static PetscErrorCode RestartState(Scheme s, H5File *file, SchemeTimes *times) {
   PetscFunctionBeginUser;
-  times.plan = (StepPlan){.level = n->step_level, .order = n->step_order, .guess = n->step_guess};
-  PetscCall(RestartLevel(s, file, &times.plan.level));
-  PetscCall(PetscArraycpy(times.dt_earlier, n->dt_earlier, SCHEME_PAST));
-  SchemeSetTimes(s, &times);
-  for (PetscInt j = 0; j < s->past; j++)
-    PetvesCheck(n->dt_earlier[j] >= 0 && n->dt_earlier[j] <= 1e300 && (j == s->past - 1 || n->dt_earlier[j] > 0),
-                s->scene->comm, "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
-                s->scene->output.restart, (double)n->dt_earlier[j]);
+  PetscCall(RestartLevel(s, file, &times->plan.level));
+  SchemeSetTimes(s, times);
+  for (PetscInt j = 0; j < s->past; j++) {
+    const PetscReal dt = times->dt_earlier[j];
+    PetvesCheck(dt >= 0 && dt <= 1e300 && (j == s->past - 1 || dt > 0), s->scene->comm,
+                "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
+                s->scene->output.restart, (double)dt);
+  }
   for (PetscInt j = 0; j <= s->past; j++) {
     State *state = j ? &s->old[j - 1] : &s->state;
     PetscCall(CheckpointVectors(file, PETSC_FALSE, s, j, state));
@@ -184,7 +183,7 @@ static PetscErrorCode RestartState(Scheme s, H5File *file, const CheckpointNumbe
 /* Read all of the open checkpoint; memory[] is what the solvers have kept from earlier steps. */
 static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, PetscInt *frames, PetscReal memory[]) {
   const PetscInt numbers = SchemeMemorySize(s);
-  CheckpointNumbers n = {.step_order = 1, .step_guess = 1}; /* allowed, where nothing can be read */
+  CheckpointNumbers n = {.times.plan = {.order = 1, .guess = 1}}; /* allowed, where nothing can be read */
   PetscBool plain;
   PetscFunctionBeginUser;
   PetscCall(H5CheckLinks(file, &plain));
@@ -195,7 +194,7 @@ static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Pet
   PetscCall(CheckpointMoveNumbers(file, PETSC_FALSE, &n));
   PetscCall(RestartEntries(s->scene, file));
   PetscCall(RestartFiles(s->scene, file));
-  PetscCall(RestartState(s, file, &n));
+  PetscCall(RestartState(s, file, &n.times));
   *frames = n.frames;
   PetscCall(RestartRecord(s, file, n.totals, record));
   PetscCall(CheckpointEntry(file, PETSC_FALSE, "/solver", numbers, 1, memory));

@@ -6,15 +6,10 @@ import h5py
 import numpy as np
 import pytest
 from harness import run_petves
-from restarts import without_wall
+from restarts import frames, without_wall
 
 SMALL = "-domain_cells 32,32 -vesicle_semi_axes 0.4,0.5 -flow_type shear"
 FIELDS = ("fluid/u", "fluid/v", "fluid/p", "vesicle/markers", "vesicle/velocity", "vesicle/tension")
-
-
-def frames(path) -> dict[str, np.ndarray]:
-    with h5py.File(path / "run.h5") as file:
-        return {name: file[name][:] for name in ("time", *FIELDS)}
 
 
 @pytest.mark.parametrize(

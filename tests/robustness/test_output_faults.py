@@ -68,18 +68,23 @@ def rows(folder: Path) -> list[list[str]]:
         return [[row[name] for name in row if name != "wall"] for row in csv.DictReader(file)]
 
 
+def meets(fault: str, name: str, folder: Path, end: float, ranks: int) -> None:
+    """A run for which the file of this name cannot be closed: the line, status 1, nothing left in memory."""
+    options = f"{SCENE} -time_end {end} -output_dir {folder} -malloc_debug -malloc_dump -objects_dump"
+    done = mpirun([PETVES, *options.split()], ranks, 60, LD_PRELOAD=fault, PETVES_FAULT=name)
+    file = folder / name.removesuffix(".tmp")
+    said = f"petves: error: {file}: cannot be written; allowed: a folder with space that can be written"
+    assert done.returncode == 1 and without_mpirun(done.stderr) == [said], done.stderr
+    assert "never freed" not in done.stdout and " bytes " not in done.stdout, done.stdout
+
+
 @pytest.mark.parametrize(
     "name, ranks", [("series.csv", 1), ("series.csv", 2), ("series.csv", 3), ("run.xmf", 1), ("run.xmf", 3)]
 )
 def test_close_that_fails_at_the_end(name, ranks, fault, straight, tmp_path):
-    """When all has been written: the line, status 1, nothing left in memory, and a checkpoint from which the run goes on
-    as if nothing had been."""
+    """When all has been written: a checkpoint is left from which the run goes on as if nothing had been."""
     folder = tmp_path / "run"
-    options = f"{SCENE} -time_end 0.1 -output_dir {folder} -malloc_debug -malloc_dump -objects_dump"
-    done = mpirun([PETVES, *options.split()], ranks, 60, LD_PRELOAD=fault, PETVES_FAULT=name)
-    said = f"petves: error: {folder}/{name}: cannot be written; allowed: a folder with space that can be written"
-    assert done.returncode == 1 and without_mpirun(done.stderr) == [said], done.stderr
-    assert "never freed" not in done.stdout and " bytes " not in done.stdout, done.stdout
+    meets(fault, name, folder, 0.1, ranks)
     assert json.loads((folder / "summary.json").read_text())["reason"] == "finished"
     run_petves(folder, f"{SCENE} -time_end 0.12 -restart {folder}/checkpoint.h5", ranks)
     assert rows(folder) == rows(straight(ranks).folder)
@@ -89,11 +94,7 @@ def test_close_that_fails_at_the_end(name, ranks, fault, straight, tmp_path):
 @pytest.mark.parametrize("name", ["series.csv", "resolved.opts", "run.xmf", "summary.json"])
 def test_close_that_fails_on_the_way(name, ranks, fault, tmp_path):
     """Of a file that is written under a temporary name, before the first step or after the last one."""
-    options = f"{SCENE} -time_end 0.04 -output_dir {tmp_path / 'run'} -malloc_debug -malloc_dump -objects_dump"
-    done = mpirun([PETVES, *options.split()], ranks, 60, LD_PRELOAD=fault, PETVES_FAULT=f"{name}.tmp")
-    said = f"petves: error: {tmp_path}/run/{name}: cannot be written; allowed: a folder with space that can be written"
-    assert done.returncode == 1 and without_mpirun(done.stderr) == [said], done.stderr
-    assert "never freed" not in done.stdout and " bytes " not in done.stdout, done.stdout
+    meets(fault, f"{name}.tmp", tmp_path / "run", 0.04, ranks)
 
 
 def simulation(folder: Path, options: str) -> str:
