@@ -1,5 +1,5 @@
 #include "layers/cellrow.h"
-#include "layers/nearimage.h"
+#include "layers/wallimage.h"
 
 void CellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
   Stencil stencil;

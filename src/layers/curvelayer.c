@@ -1,5 +1,4 @@
 #include "layers/curvelayer.h"
-#include "base/lanes.h"
 
 #define FINE 4    /* finer points a marker */
 #define CLOSE 4   /* spacings of the finer points within which the trapezoidal rule is corrected */
@@ -19,12 +18,12 @@ typedef struct {
   PetscReal pressure, winding;
 } CurveSums;
 
-/* What the two layers differ in: the sums of points, what they lack at the complex t0 where the curve is at z, and the
-   spacings of the markers within which the finer points are summed: everywhere where slope times density has modes that
-   the markers do not resolve. */
+/* What the two layers differ in: what makes integrals of sums of the kernel, without their factors; what sums lack at
+   the complex t0 where the curve is at z, and the spacings of the markers within which the finer points are summed:
+   everywhere where slope times density has modes that the markers do not resolve. */
 typedef struct {
-  PetscReal near;
-  CurveSums (*sums)(const LayerPoints *points, Point z);
+  const PairKernel *pair;
+  PetscReal velocity, pressure, near;
   void (*correct)(CurveLayer layer, Point z, Point t0, Point slope, CurveSums *sums);
 } CurveKernel;
 
@@ -47,18 +46,23 @@ static Point CurvePole(PetscInt N, Point t0, Point twice, Point once) {
   return once * simple + twice * (I * side * (PetscReal)N) * simple / (1 - e);
 }
 
-static CurveSums SingleSums(const LayerPoints *c, Point z) {
+static CurveSums CurveSumsOf(const CurveKernel *k, const LayerPoints *c, Point z) {
   const PetscReal step = 2 * PETSC_PI / (PetscReal)c->n;
-  Lanes sum[3] = {{0}, {0}, {0}};
+  Lanes sum[4] = {{0}, {0}, {0}, {0}};
   for (PetscInt j = 0; j < c->n; j += LANES) {
     const Lanes x = creal(z) - LanesAt(c->each[AT] + j), y = cimag(z) - LanesAt(c->each[AT + 1] + j);
-    const Lanes f = LanesAt(c->each[DENSITY] + j), g = LanesAt(c->each[DENSITY + 1] + j);
-    const Lanes r2 = x * x + y * y, along = (x * f + y * g) / r2, logarithm = 0.5 * LanesLog(r2);
-    sum[0] += x * along - logarithm * f;
-    sum[1] += y * along - logarithm * g;
-    sum[2] += along;
+    const Lanes N[2] = {LanesAt(c->each[SLOPE + 1] + j), -LanesAt(c->each[SLOPE] + j)};
+    const Lanes J[2] = {LanesAt(c->each[DENSITY] + j), LanesAt(c->each[DENSITY + 1] + j)};
+    Lanes K[3], P[2];
+    k->pair->velocity(x, y, N, K);
+    k->pair->pressure(x, y, N, P);
+    sum[0] += K[0] * J[0] + K[2] * J[1];
+    sum[1] += K[2] * J[0] + K[1] * J[1];
+    sum[2] += P[0] * J[0] + P[1] * J[1];
+    sum[3] -= (x * N[0] + y * N[1]) / (x * x + y * y);
   }
-  return (CurveSums){step * (LanesSum(sum[0]) + I * LanesSum(sum[1])), step * LanesSum(sum[2]), 0};
+  return (CurveSums){step * k->velocity * (LanesSum(sum[0]) + I * LanesSum(sum[1])),
+                     step * k->pressure * LanesSum(sum[2]), step * LanesSum(sum[3])};
 }
 
 /* Poles, and a logarithm, of the analytic integrands. Pressure: Re F/(z - X(t)). Velocity: of r (r.F)/r^2 the part
@@ -76,29 +80,6 @@ static void SingleCorrect(CurveLayer c, Point z, Point t0, Point slope, CurveSum
                  2 * PETSC_PI / (PetscReal)N * density * logarithm;
 }
 
-static CurveSums DoubleSums(const LayerPoints *c, Point z) {
-  const PetscReal step = 2 * PETSC_PI / (PetscReal)c->n;
-  Lanes sum[4] = {{0}, {0}, {0}, {0}};
-  for (PetscInt j = 0; j < c->n; j += LANES) {
-    Lanes r[2], t[2], J[2];
-    for (int d = 0; d < 2; d++) {
-      r[d] = LanesAt(c->each[AT + d] + j) - (d ? cimag(z) : creal(z));
-      t[d] = LanesAt(c->each[SLOPE + d] + j);
-      J[d] = LanesAt(c->each[DENSITY + d] + j);
-    }
-    const Lanes over = 1 / (r[0] * r[0] + r[1] * r[1]);
-    const Lanes along = (t[0] * r[0] + t[1] * r[1]) * over, turn = (t[1] * r[0] - t[0] * r[1]) * over; /* X'/r */
-    const Lanes c2 = (r[0] * r[0] - r[1] * r[1]) * over, s2 = 2 * r[0] * r[1] * over;                  /* r/conj(r) */
-    const Lanes p[2] = {J[0] * along - J[1] * turn, J[0] * turn + J[1] * along};                       /* J X'/r */
-    sum[0] += turn * (J[0] + c2 * J[0] + s2 * J[1]);
-    sum[1] += turn * (J[1] + s2 * J[0] - c2 * J[1]);
-    sum[2] += (p[1] * r[0] - p[0] * r[1]) * over;
-    sum[3] += turn;
-  }
-  return (CurveSums){step * (LanesSum(sum[0]) + I * LanesSum(sum[1])), step * LanesSum(sum[2]),
-                     step * LanesSum(sum[3])};
-}
-
 /* Of the velocity, 2i times it is J X'/r - conj(conj(J) X'/r) + conj(J conj(X')/r) - conj(conj(r) J X'/r^2), bars
    meaning values at conj(t0); X'/r^2 = 1/(X'(t0) (t - t0)^2) without a simple pole. */
 static void DoubleCorrect(CurveLayer c, Point z, Point t0, Point slope, CurveSums *s) {
@@ -112,11 +93,10 @@ static void DoubleCorrect(CurveLayer c, Point z, Point t0, Point slope, CurveSum
   const Point across = CurvePole(N, t0, 0, J * conj(turned) / slope), last = CurvePole(N, t0, h / slope, dh / slope);
   s->velocity += (direct - conj(back) + conj(across) - conj(last)) / (2 * I);
   s->pressure += cimag(CurvePole(N, t0, J / slope, other / slope));
-  s->winding += cimag(CurvePole(N, t0, 0, 1));
 }
 
-static const CurveKernel curve_kernel[] = {
-    [LAYER_SINGLE] = {6, SingleSums, SingleCorrect}, [LAYER_DOUBLE] = {PETSC_INFINITY, DoubleSums, DoubleCorrect}};
+static const CurveKernel single = {&stokeslet, 4 * PETSC_PI, 2 * PETSC_PI, 6, SingleCorrect};
+static const CurveKernel twice = {&stresslet, -2 * PETSC_PI, PETSC_PI, PETSC_INFINITY, DoubleCorrect};
 
 static void LayerPointsPut(LayerPoints *c, int what, PetscInt j, Point value) {
   c->each[what][j] = creal(value);
@@ -144,17 +124,17 @@ static PetscErrorCode LayerPointsCreate(CurveLayer c, PetscInt n, LayerPoints *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CurveLayerCreate(LayerType type, PetscInt n, PetscReal nu, const PetscReal X[],
+PetscErrorCode CurveLayerCreate(const PairKernel *kernel, PetscInt n, PetscReal nu, const PetscReal X[],
                                 const PetscReal density[], CurveLayer *out) {
-  const PetscReal single = (PetscReal)n / (4 * PETSC_PI * PETSC_PI);
+  const PetscReal force = (PetscReal)n / (4 * PETSC_PI * PETSC_PI);
   CurveLayer c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
   *out = c;
-  c->kernel = &curve_kernel[type];
+  c->kernel = kernel->force ? &single : &twice;
   c->n = n;
-  c->factor[0] = type == LAYER_SINGLE ? single / (2 * nu) : -1 / (2 * PETSC_PI);
-  c->factor[1] = type == LAYER_SINGLE ? single : nu / PETSC_PI;
+  c->factor[0] = kernel->force ? force / (2 * nu) : -1 / (2 * PETSC_PI);
+  c->factor[1] = kernel->force ? force : nu / PETSC_PI;
   PetscCall(PetscMalloc2(n + 1, &c->curve, n + 1, &c->density));
   FourierSeriesModes(n, X, c->curve);
   FourierSeriesModes(n, density, c->density);
@@ -211,8 +191,11 @@ static CurveSums CurveNearSums(CurveLayer c, Point z) {
   Point t0 = 2 * PETSC_PI * (PetscReal)nearest / (PetscReal)c->fine.n, slope;
   if (distance < 1e-7 * c->spacing) /* a point of the curve: next to it, outside */
     z = LayerPointsGet(&c->fine, AT, nearest) - I * 1e-7 * c->spacing * along / cabs(along);
-  CurveSums s = c->kernel->sums(&c->fine, z);
-  if (distance < CLOSE * c->spacing && CurveRoot(c, z, &t0, &slope)) c->kernel->correct(c, z, t0, slope, &s);
+  CurveSums s = CurveSumsOf(c->kernel, &c->fine, z);
+  if (distance < CLOSE * c->spacing && CurveRoot(c, z, &t0, &slope)) {
+    s.winding += cimag(CurvePole(c->fine.n, t0, 0, 1));
+    c->kernel->correct(c, z, t0, slope, &s);
+  }
   return s;
 }
 
@@ -221,7 +204,7 @@ void CurveLayerAdd(CurveLayer c, const PetscReal x[2], PetscReal u[2], PetscReal
   PetscReal distance;
   (void)CurveNearest(&c->markers, z, &distance);
   const CurveSums s = distance < c->kernel->near * FINE * c->spacing ? CurveNearSums(c, z)
-                                                                     : c->kernel->sums(&c->markers, z);
+                                                                     : CurveSumsOf(c->kernel, &c->markers, z);
   u[0] += c->factor[0] * creal(s.velocity);
   u[1] += c->factor[0] * cimag(s.velocity);
   *p += c->factor[1] * s.pressure;

@@ -13,18 +13,19 @@
    The trapezoidal rule takes finer points, or the markers of a distant single layer, and next to the curve what the
    rule lacks at the integrands' poles comes on top in closed form. Nothing crosses ranks. */
 #pragma once
+#include "layers/pairkernel.h"
 #include "numerics/fourierseries.h"
 
-typedef enum { LAYER_SINGLE, LAYER_DOUBLE } LayerType;
 typedef struct _p_CurveLayer *CurveLayer;
 
 /* CurveLayerCreate - of n markers X[2n] with densities density[2n], in a fluid of viscosity nu. Not collective. */
-PETSC_EXTERN PetscErrorCode CurveLayerCreate(LayerType type, PetscInt n, PetscReal nu, const PetscReal X[],
+PETSC_EXTERN PetscErrorCode CurveLayerCreate(const PairKernel *kernel, PetscInt n, PetscReal nu, const PetscReal X[],
                                              const PetscReal density[], CurveLayer *layer);
 PETSC_EXTERN PetscErrorCode CurveLayerDestroy(CurveLayer *layer);
 
 /* CurveLayerAdd - add the velocity to u[2] (length/time) and the pressure to p (length^2/time^2, zero far away) at
-   x[2]. A point on the curve gets the values outside. inside, of a double layer: whether x is inside the curve. Not
+   x[2]. A point on the curve gets the values outside. inside: whether x is inside the curve, where the finer
+   points are summed. Not
    collective. */
 PETSC_EXTERN void CurveLayerAdd(CurveLayer layer, const PetscReal x[2], PetscReal u[2], PetscReal *p,
                                 PetscBool *inside);

@@ -169,7 +169,7 @@ void DipoleFacesAnswer(const DipoleFaces *f, const OffsetTable lattice[2], const
         Read(V_ROWS, 1, f, c, k, w + U_ROWS * U_VECTORS, sum);
       else
         Read(U_ROWS, U_VECTORS, f, c, k, w, sum);
-      LanesTwoSums(sum[0], sum[1], &free[c][k], &free[2 + c][k]);
+      LanesTwoSums(sum[0], sum[1], &free[c ? 3 : 0][k], &free[c ? 1 : 2][k]);
     }
   }
 }

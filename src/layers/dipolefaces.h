@@ -12,6 +12,7 @@ typedef struct {
   PetscInt line, at; /* where its numbers are */
 } FaceRun;
 
+#define DIPOLE_FACE_CELLS 30   /* up to which markers share a dipole's faces: what the lattice's tables reach */
 #define DIPOLE_FACE_WEIGHTS 13 /* vectors: 4 rows of two of u, 5 rows of one of v */
 
 typedef struct {
@@ -24,8 +25,8 @@ typedef struct {
 } DipoleFaces;
 
 /* DipoleFacesCreate - those of n markers whose unfolded stencils (cbs54) are stencil[2n]. DipoleFacesAnswer -
-   free[4][n], as DipoleContract, of the dipole's stencils and N, times scale; `cells` are added to offsets, which lie
-   within the tables but for OFFSET_LAGS. Not collective. */
+   free[4][n], xx, yy, xy (x from J_y), yx, of the dipole's stencils and N, times scale; `cells` are added to offsets,
+   which lie within the tables but for OFFSET_LAGS. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleFacesCreate(PetscInt n, const PaddedStencil stencil[], DipoleFaces *faces);
 PETSC_EXTERN PetscErrorCode DipoleFacesDestroy(DipoleFaces *faces);
 PETSC_EXTERN void DipoleFacesAnswer(const DipoleFaces *faces, const OffsetTable lattice[2],

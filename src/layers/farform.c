@@ -56,7 +56,11 @@ static void LatticeTransform(const PetscReal moment[2][TERMS], PetscReal c, Pets
   }
 }
 
-static void NearFarFill(const PetscReal moment[2][TERMS], NearFar *far) {
+void NearFarMake(const Kernel *kernel, NearFar *far) {
+  PetscReal moment[2][TERMS];
+  KernelMoments(kernel->along, TERMS, moment[0]);
+  KernelMoments(kernel->across, TERMS, moment[1]);
+  *far = (NearFar){.fourth = {moment[0][2], moment[1][2]}};
   for (int angle = 0; angle < ANGLES; angle++) {
     const PetscReal phi = 2 * PETSC_PI * angle / ANGLES;
     Series L[3];
@@ -70,14 +74,4 @@ static void NearFarFill(const PetscReal moment[2][TERMS], NearFar *far) {
       }
     }
   }
-}
-
-void NearFarMake(const Kernel *kernel, NearFar far[2]) {
-  PetscReal moment[2][TERMS];
-  KernelMoments(kernel->along, TERMS, moment[0]);
-  KernelMoments(kernel->across, TERMS, moment[1]);
-  far[NEAR_ONE] = (NearFar){.fourth = {moment[0][2], moment[1][2]}, .reach = 12};
-  NearFarFill(moment, &far[NEAR_ONE]);
-  far[NEAR_TWO] = far[NEAR_ONE];
-  far[NEAR_TWO].reach = 10;
 }

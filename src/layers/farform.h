@@ -17,12 +17,10 @@
 typedef struct {
   PetscReal fourth[2]; /* mean fourth moments of the weights along a component's direction and across it */
   PetscReal p[NEAR_FAR_WAVES][NEAR_FAR_ORDERS], q[NEAR_FAR_WAVES][NEAR_FAR_ORDERS];
-  PetscReal reach; /* cells from which on it is taken */
 } NearFar;
 
-/* NearFarMake - of a kernel, for markers of one vesicle and for those of two. Not collective. */
-enum { NEAR_ONE, NEAR_TWO };
-PETSC_EXTERN void NearFarMake(const Kernel *kernel, NearFar far[2]);
+/* NearFarMake - of a kernel. Not collective. */
+PETSC_EXTERN void NearFarMake(const Kernel *kernel, NearFar *far);
 
 /* NearFarPairs - C of four pairs, (x, y) apart (cells), times scale: xx, yy, xy, yx. fourth: by how much the fourth
    moments of the two stencils that meet in each of them are above the mean, added, along x and along y. What is left

@@ -140,7 +140,7 @@ void FinePairsAtWalls(const LayerSetting *set, const NearBounds bounds[], PetscI
   *count = 0;
   if (g->free || kind[row].type != CURVE_CLOSED || kind[column].type != CURVE_CLOSED) return;
   for (int wall = 0; wall < 4; wall++) {
-    const PetscReal gap = NearImageGap(g, wall / 2, wall % 2, &bounds[row], &bounds[column]);
+    const PetscReal gap = WallGap(g, wall, &bounds[row], &bounds[column]);
     if (!g->wall[wall / 2] || gap > CLOSE_AT_WALLS * FinePairSpacing(set, row, column)) continue;
     pair[*count] = FinePairMake(set, row, column, shift, gap);
     pair[(*count)++].wall = wall;

@@ -12,9 +12,8 @@
 
    FinePairMake or FinePairsAtWalls says how fine and how wide, then FinePairParts gives the difference. */
 #pragma once
-#include "layers/imagefar.h"
 #include "layers/layersetting.h"
-#include "layers/nearimage.h"
+#include "layers/wallimage.h"
 
 /* Two bodies, the column's moved by `shift` (length) and, with a wall, mirrored there. */
 typedef struct {

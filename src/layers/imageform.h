@@ -45,6 +45,13 @@ typedef struct {
   Lanes c[IMAGE_ORDERS][IMAGE_MOST_PARTS][IMAGE_MONOMIALS]; /* each number four times */
 } ImageForms;
 
+/* A kernel's moments along and across, the forms of pairs off the wall, and what the first order has of a response's
+   and of a source's second moment across the wall. */
+typedef struct {
+  ImageMoments moment[2];
+  ImageForms forms, bend[2];
+} ImageKernel;
+
 /* ImageMomentsOf - of weights. ImageMomentsBoth - of one kernel after the other. ImageFormAdd - to += alpha times the
    form of these numbers. ImageFormSmooth - the form through kernels of these moments: along the wall those of both ends
    together, across it of the response and of the source. ImageFormBend - what a second moment of 1 of the response (end

@@ -86,29 +86,6 @@ PetscErrorCode ImageBlockFill(const ImageBlock *b, PetscReal value[IMAGE_ROWS][I
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* psi of a force in row j: t (OFFSET_UU and OFFSET_VU) or n, whose parts are those of -k psi. */
-static void StokesletPsi(const ImageMode *m, int source, int j, PetscReal psi[IMAGE_LINES]) {
-  const PetscReal before = m->g2[j > 0 ? j - 1 : 1];
-  if (source == OFFSET_VV)
-    ImagePsi(m, -m->k * m->g2[j], -m->k * (m->g2[j + 1] - before), psi);
-  else
-    ImagePsi(m, m->g2[j] - m->g2[j + 1], m->F[j + 1] + m->F[j], psi);
-}
-
-/* The quadrature's part that is the same everywhere goes with the constants. */
-PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *t) {
-  PetscReal theta[IMAGE_NODES], weight[IMAGE_NODES], level = -LatticeConstant();
-  PetscFunctionBeginUser;
-  GaussLegendre(IMAGE_NODES, theta, weight);
-  for (int q = 0; q < IMAGE_NODES; q++) level += weight[q] / (4 * PETSC_PI * theta[q]);
-  const ImageBlock block[OFFSET_COUNT] = {
-      [OFFSET_UU] = {StokesletPsi, lattice, OFFSET_UU, .level = level},
-      [OFFSET_VV] = {StokesletPsi, lattice, OFFSET_VV, .component = 1, .level = 1 / (4 * PETSC_PI) + level},
-      [OFFSET_VU] = {StokesletPsi, lattice, OFFSET_VU, .component = 1, .half = -1, .below = 1}};
-  for (int b = 0; b < OFFSET_COUNT; b++) PetscCall(ImageBlockFill(&block[b], t->value[b]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid g, int t, PetscReal x, const ImageRows *row,
                    const ImageRows *source) {
   const PaddedStencil *from = row->along, *to = source->along;

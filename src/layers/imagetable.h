@@ -1,11 +1,12 @@
-/* The Stokeslet of the half-space lattice, h = nu = 1: what the grid's Stokes solve gives at a face per unit force on a
-   face above one wall, without inertia (docs/nearfield.md, Walls). In mode theta along the wall the wall adds
+/* The half-space lattice, h = 1: what the grid's Stokes solve gives at a face per unit source above one wall, without
+   inertia and with viscosity 1 (docs/nearfield.md, Walls). In mode theta along the wall the wall adds
 
        psi(j) = (A + B j) e^{-mu j},      mu = 2 asinh(sin(theta/2)),
 
    to the stream function of the free lattice, A and B such that both velocities are zero on the wall. The integral over
    theta is tabulated for rows of response and source and offsets along the wall. Nothing crosses ranks. */
 #pragma once
+#include "layers/imageform.h"
 #include "layers/stencilsums.h"
 
 #define IMAGE_CELLS 20 /* from a marker to another one's image, up to which stencils are summed if one is folded, */
@@ -14,11 +15,13 @@
 #define IMAGE_SHIFT 28 /* largest offset along the wall */
 #define IMAGE_WIDTH (2 * IMAGE_SHIFT + 1)
 
-/* Velocity per unit force by rows of response and source and the offset along the wall, response minus source, as in
-   OffsetTable with the wall along x: t to t (OFFSET_UU), n to n (OFFSET_VV), n to t (OFFSET_VU; at the offset minus
-   1/2). */
+/* Parts of a force's image seen from a wall, response and source: tangential and normal to it. */
+enum { IMAGE_TT, IMAGE_NN, IMAGE_NT, IMAGE_TN, IMAGE_PARTS };
+
+/* Velocity per unit source by part (ImagePlaces), rows of response and source and the offset along the wall, entry of
+   the response minus that of the source as in the free lattice's table, with the wall along x. */
 typedef struct {
-  PetscReal value[OFFSET_COUNT][IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH];
+  PetscReal value[IMAGE_MOST_PARTS][IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH];
 } ImageTable;
 
 /* A mode along the wall: k, s, sinh mu, cosh mu, and by row from row 0 F = g1 - s g2, g2 and e^{-mu j} (imagetable.c).
@@ -48,12 +51,14 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode ImageBlockFill(const ImageBlock *block,
                                            PetscReal value[IMAGE_ROWS][IMAGE_ROWS][IMAGE_WIDTH]);
 
-/* Where the parts of a pair, seen from a wall whose normal is in this direction, are in x and y, and which are odd in
-   the distance from the wall: these change their sign at the upper end. ImageTurn - out += alpha times parts seen from
-   a wall, 2 times the direction of its normal plus its side. Not collective. */
+/* The parts of a pair seen from a wall: where each is in x and y by the direction of the wall's normal, which are odd
+   in the distance from the wall and change their sign at the upper end, and what meets in each: the component of the
+   response, 0 along the wall, 1 across it, and the number of the source: 0 along (x or xx), 1 across, 2 xy. ImageTurn -
+   out += alpha times parts seen from a wall, 2 times the direction of its normal plus its side. Not collective. */
 typedef struct {
-  int parts, place[2][6];
-  PetscBool odd[6];
+  int parts, place[2][IMAGE_MOST_PARTS];
+  PetscBool odd[IMAGE_MOST_PARTS];
+  int response[IMAGE_MOST_PARTS], source[IMAGE_MOST_PARTS];
 } ImagePlaces;
 static inline void ImageTurn(const ImagePlaces *p, int wall, PetscReal alpha, const PetscReal part[], PetscReal out[]) {
   for (int q = 0; q < p->parts; q++) out[p->place[wall / 2][q]] += (wall % 2 && p->odd[q] ? -alpha : alpha) * part[q];
@@ -70,7 +75,3 @@ typedef struct {
    direction t, whose markers are x cells apart there. Not collective. */
 PETSC_EXTERN PetscReal ImageSum(const PetscReal (*table)[IMAGE_ROWS][IMAGE_WIDTH], Grid grid, int t, PetscReal x,
                                 const ImageRows *response, const ImageRows *source);
-
-/* ImageTableFill - from the free lattice's table (latticegreen.h), of a reach of IMAGE_SHIFT at least. Not collective.
- */
-PETSC_EXTERN PetscErrorCode ImageTableFill(const OffsetTable *lattice, ImageTable *table);

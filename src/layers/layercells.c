@@ -1,7 +1,7 @@
 #include "layers/layercells.h"
 #include "layers/cellrow.h"
 #include "layers/curvelayer.h"
-#include "layers/doubleblock.h"
+#include "layers/layerpairs.h"
 #include "layers/latticegreen.h"
 
 /* Distance from a marker up to which a cell is corrected, in cells; and in spacings of markers, whose single forces the
@@ -17,19 +17,20 @@ typedef struct {
   PetscReal a2, a4, a6, b2, b4, b6;
 } FarCell;
 
-/* What all cells need, and one vesicle's sources: each marker has `sources` of them, components of a force or parts of
-   a dipole. */
+/* What all cells need, and one vesicle's sources, of which each marker has as many as the kernel: components of a force
+   or parts of a dipole. */
 typedef struct _LayerCells {
   const LayerSetting *set;
-  LayerType type;
-  int sources;
+  const PairKernel *kernel;
   OffsetEntry answer[3][DIPOLE_COUNT]; /* of the lattice's u, v and p by source */
   PetscReal scale[3];                  /* of u, v, p in the tables */
   FarCell far;
   CurveLayer curve;
   PetscReal ratio;
-  const PetscReal *X;     /* [2n] */
-  PetscReal *strength;    /* [sources n]; whole vectors, as X */
+  const PetscReal *X;     /* [2n] and whole vectors, as the next two */
+  PetscReal *density;     /* [2n] forces, or jumps */
+  PetscReal *normal;      /* [2n] n w, zero of forces */
+  PetscReal *strength;    /* [sources n] */
   PaddedStencil *stencil; /* [sources n], not wrapped into the grid */
   PetscReal *over;        /* [cells] 1/ratio inside vesicles, else 1; NULL: no contrast */
 } LayerCells;
@@ -74,39 +75,32 @@ static void LayerCellsLattice(void *context, PetscInt k, const PetscInt cell[2],
   for (int c = 0; c < 3; c++) {
     PaddedStencil weights;
     CellStencil((Field)c, cell, &weights);
-    for (int q = 0; q < s->sources; q++) {
-      const PetscInt source = s->sources * k + q;
+    for (int q = 0; q < s->kernel->sources; q++) {
+      const PetscInt source = s->kernel->sources * k + q;
       StencilRowAdd(&s->answer[c][q], &weights, &s->stencil[source], -s->scale[c] * s->strength[source], n, sum[c]);
     }
   }
 }
 
-/* Minus what the lattice has of four distant markers, (x, y) from them to the cell, with forces F: the Stokeslet, and
-   the closed form of its difference. */
-static void SingleFar(const LayerCells *s, Lanes x, Lanes y, const Lanes F[], Lanes sum[3]) {
+/* Minus what the lattice has of four distant markers, (x, y) from them to the cell, with densities F: the kernel
+   itself, and of forces the closed form of its difference, but for h^2/r^3 of the pressure. */
+static void LayerCellsFar(const LayerCells *s, Lanes x, Lanes y, const Lanes N[2], const Lanes F[2], Lanes sum[3]) {
   const FarCell *far = &s->far;
   const PetscReal h = s->set->markers->grid->h, nu = s->set->nu;
-  const Lanes r2 = x * x + y * y, over = 1 / r2, along = (x * F[0] + y * F[1]) * over,
-              logarithm = 0.5 * LanesLog(r2 * (1 / (h * h)));
-  const Lanes c2 = (x * x - y * y) * over, s2 = 2 * x * y * over, c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2,
-              c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
+  Lanes K[3], P[2];
+  PairFree(s->kernel, s->set, x, y, N, K);
+  s->kernel->pressure(x, y, N, P);
+  sum[0] = -K[0] * F[0] - K[2] * F[1];
+  sum[1] = -K[2] * F[0] - K[1] * F[1];
+  sum[2] = (s->kernel->force ? -1 : -nu) * (P[0] * F[0] + P[1] * F[1]);
+  if (!s->kernel->force) return;
+  const Lanes over = 1 / (x * x + y * y), c2 = (x * x - y * y) * over, s2 = 2 * x * y * over;
+  const Lanes c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2, c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
   const Lanes factor = h * h / (2 * PETSC_PI * nu) * over, even = 4 * far->a4 * c4,
               odd = 2 * far->a2 * c2 + 6 * far->a6 * c6, both = -2 * far->b2 * s2 - 6 * far->b6 * s6,
               ends = 4 * far->b4 * s4;
-  const PetscReal single = 1 / (4 * PETSC_PI * nu);
-  sum[0] = factor * ((even - odd) * F[0] + (both + ends) * F[1]) - single * (x * along - logarithm * F[0]);
-  sum[1] = factor * ((both - ends) * F[0] + (even + odd) * F[1]) - single * (y * along - logarithm * F[1]);
-  sum[2] = along * (-1 / (2 * PETSC_PI)); /* but for h^2/r^3 */
-}
-
-/* Minus the double layer itself of four distant markers with the dipoles T. */
-static void DoubleFar(const LayerCells *s, Lanes x, Lanes y, const Lanes T[], Lanes sum[3]) {
-  const Lanes over = 1 / (x * x + y * y);
-  const Lanes through = 0.5 * (T[DIPOLE_XX] * x * x + T[DIPOLE_YY] * y * y) + T[DIPOLE_XY] * x * y;
-  const Lanes factor = through * over * over / PETSC_PI;
-  sum[0] = -factor * x;
-  sum[1] = -factor * y;
-  sum[2] = s->set->nu * ((0.5 / PETSC_PI) * (T[DIPOLE_XX] + T[DIPOLE_YY]) * over - 2 * factor);
+  sum[0] += factor * ((even - odd) * F[0] + (both + ends) * F[1]);
+  sum[1] += factor * ((both - ends) * F[0] + (even + odd) * F[1]);
 }
 
 /* The exact layer, less the lattice's of all markers that are not near the cell; and which cells are inside. */
@@ -119,22 +113,21 @@ static void LayerCellsExact(void *context, const CellRow *row, PetscInt i, const
     CurveLayerAdd(s->curve, at, found, &found[2], &inside);
   else if (s->over)
     inside = CurveLayerContains(s->curve, at);
-  if (inside) s->over[cell] = 1 / s->ratio;
+  if (inside && s->over) s->over[cell] = 1 / s->ratio;
   for (PetscInt k = 0; k < row->n && corrected && !row->grid->free; k += LANES) {
     const LanesBits far = CellRowDistant(row, k, i);
-    const int m = s->sources;
-    const PetscReal *T = s->strength + m * k;
-    Lanes x, y, source[DIPOLE_COUNT], four[3];
+    Lanes x, y, N[2], F[2], four[3];
     LanesPairs(s->X + 2 * k, &x, &y);
-    for (int q = 0; q < m; q++) source[q] = (Lanes){T[q], T[m + q], T[2 * m + q], T[3 * m + q]};
-    (s->type == LAYER_SINGLE ? SingleFar : DoubleFar)(s, at[0] - x, at[1] - y, source, four);
+    LanesPairs(s->normal + 2 * k, &N[0], &N[1]);
+    LanesPairs(s->density + 2 * k, &F[0], &F[1]);
+    LayerCellsFar(s, at[0] - x, at[1] - y, N, F, four);
     for (int c = 0; c < 3; c++) sum[c] += LanesWhere(far, four[c]);
   }
   for (int c = 0; c < 3; c++) found[c] += LanesSum(sum[c]);
 }
 
-/* The forces on the n markers of a vesicle, density[2n]. */
-static void SingleSources(LayerCells *s, PetscInt n, const PetscReal density[]) {
+/* The forces on the n markers of a vesicle. */
+static void SingleSources(LayerCells *s, PetscInt n) {
   const Markers m = s->set->markers;
   for (PetscInt k = 0; k < 2 * n; k++) {
     Stencil stencil;
@@ -144,16 +137,17 @@ static void SingleSources(LayerCells *s, PetscInt n, const PetscReal density[]) 
       stencil.n[dir] = (along ? m->kernel->along : m->kernel->across)(r, &stencil.first[dir], stencil.weight[dir]);
     }
     StencilPad(&stencil, &s->stencil[k]);
-    s->strength[k] = density[k];
+    s->strength[k] = s->density[k];
   }
 }
 
-/* The dipoles of the jumps J[2n] at the n markers of vesicle v. */
-static PetscErrorCode DoubleSources(LayerCells *s, PetscInt v, PetscInt n, const PetscReal J[]) {
-  PetscReal *normal, *along;
+/* The dipoles of the jumps at the n markers of vesicle v. */
+static PetscErrorCode DoubleSources(LayerCells *s, PetscInt v, PetscInt n) {
+  const PetscReal *J = s->density, *normal = s->normal;
+  PetscReal *along;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * n, &normal, n, &along));
-  PetscCall(DoubleGeometry(s->set->bodies->spectral[v], n, s->X, normal, along));
+  PetscCall(PetscMalloc1(n, &along));
+  PetscCall(DoubleGeometry(s->set->bodies->spectral[v], n, s->X, s->normal, along));
   for (PetscInt k = 0; k < n; k++) {
     PetscReal *T = s->strength + DIPOLE_COUNT * k;
     Stencil part[DIPOLE_COUNT];
@@ -163,7 +157,7 @@ static PetscErrorCode DoubleSources(LayerCells *s, PetscInt v, PetscInt n, const
     DipoleStencilsUnwrapped(s->set->markers->grid, s->X + 2 * k, part);
     for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->stencil[DIPOLE_COUNT * k + c]);
   }
-  PetscCall(PetscFree2(normal, along));
+  PetscCall(PetscFree(along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -173,31 +167,32 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], 
   const Membrane m = s->set->bodies->membrane;
   const Layout l = m->layout;
   const Grid g = s->set->markers->grid;
-  const CellLayer of = {s, s->type == LAYER_SINGLE ? SUMMED_SINGLE : SUMMED_DOUBLE, LayerCellsLattice, LayerCellsExact};
+  const CellLayer of = {s, s->kernel->force ? SUMMED_SINGLE : SUMMED_DOUBLE, LayerCellsLattice, LayerCellsExact};
+  const int sources = s->kernel->sources;
   PetscReal *x, *all;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * (l->M + LANES), &x, 2 * l->M, &all));
-  PetscCall(PetscCalloc2(s->sources * (l->M + LANES), &s->strength, s->sources * l->M, &s->stencil));
+  PetscCall(PetscCalloc3(2 * (l->M + LANES), &x, 2 * (l->M + LANES), &all, 2 * (l->M + LANES), &s->normal));
+  PetscCall(PetscCalloc2(sources * l->M, &s->strength, sources * l->M, &s->stencil));
   PetscCall(LayoutGatherVec(l, X, x));
   PetscCall(LayoutGatherVec(l, density, all));
   for (PetscInt v = 0; v < l->bodies; v++) {
-    PetscReal *own = all + 2 * l->start[v];
     CellRow row;
     s->X = x + 2 * l->start[v];
+    s->density = all + 2 * l->start[v];
     if (ratio && ratio[v] == 1) continue;
     if (!CellRowBegin(g, LayoutCount(l, v), s->X, PetscMax(CELLS * g->h, SPACINGS * m->ds[v]), &row)) continue;
     s->ratio = ratio ? ratio[v] : 1;
-    for (PetscInt k = 0; k < 2 * row.n && ratio; k++) own[k] *= 1 - ratio[v];
-    if (s->type == LAYER_SINGLE)
-      SingleSources(s, row.n, own);
+    for (PetscInt k = 0; k < 2 * row.n && ratio; k++) s->density[k] *= 1 - ratio[v];
+    if (s->kernel->force)
+      SingleSources(s, row.n);
     else
-      PetscCall(DoubleSources(s, v, row.n, own));
-    PetscCall(CurveLayerCreate(s->type, row.n, s->set->nu, s->X, own, &s->curve));
+      PetscCall(DoubleSources(s, v, row.n));
+    PetscCall(CurveLayerCreate(s->kernel, row.n, s->set->nu, s->X, s->density, &s->curve));
     PetscCall(CellRowCorrect(&row, &of, field));
     PetscCall(CurveLayerDestroy(&s->curve));
   }
   PetscCall(PetscFree2(s->strength, s->stencil));
-  PetscCall(PetscFree2(x, all));
+  PetscCall(PetscFree3(x, all, s->normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,8 +201,7 @@ PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *la
   const Grid g = set->markers->grid;
   OffsetTable pressure = {0};
   LayerCells s = {.set = set,
-                  .type = LAYER_SINGLE,
-                  .sources = 2,
+                  .kernel = &stokeslet,
                   .answer = {{{lattice, OFFSET_UU, {0, 0}}, {lattice, OFFSET_VU, {1, -1}}}, /* StencilFourSums */
                              {{lattice, OFFSET_VU, {0, 0}}, {lattice, OFFSET_VV, {0, 0}}},
                              {{&pressure, OFFSET_UU, {0, 0}}, {&pressure, OFFSET_VV, {0, 0}}}},
@@ -225,10 +219,7 @@ PetscErrorCode DoubleCellsCorrect(const LayerSetting *set, const OffsetTable lat
   const Grid g = set->markers->grid;
   const PetscInt cells = g->n[0] * g->rows[FIELD_P];
   OffsetTable pressure = {0};
-  LayerCells s = {.set = set,
-                  .type = LAYER_DOUBLE,
-                  .sources = DIPOLE_COUNT,
-                  .scale = {1 / g->h, 1 / g->h, set->nu / (g->h * g->h)}};
+  LayerCells s = {.set = set, .kernel = &stresslet, .scale = {1 / g->h, 1 / g->h, set->nu / (g->h * g->h)}};
   PetscFunctionBeginUser;
   for (int c = 0; c < 3; c++)
     for (int q = 0; q < DIPOLE_COUNT; q++) {

@@ -1,6 +1,5 @@
 #include "mobility/boxgrid.h"
-#include "layers/doubleblock.h"
-#include "layers/nearblock.h"
+#include "layers/layerpairs.h"
 #include "fluid/stokes/stokes.h"
 #include "markers/streamresponse.h"
 
@@ -10,10 +9,9 @@ typedef struct {
   Layout layout; /* one body: the places, x fastest */
   Markers markers;
   LayerSetting set;
-  SinglePairs pairs; /* pairs of places */
-  DoubleImage twice; /* what walls add to dipoles at the places */
-  Vec force, u, p;   /* on the grid; NULL for forces, whose rows are not kept */
-  Vec F, U;          /* at the places */
+  LayerPairs pairs; /* pairs of places */
+  Vec force, u, p;  /* on the grid; NULL for forces, whose rows are not kept */
+  Vec F, U;         /* at the places */
   const BoxAxis *axis;
   const BoxLattice *lattice;
   PaddedStencil *dipole; /* [DIPOLE_COUNT places] stencils of dipoles; NULL for forces */
@@ -49,17 +47,17 @@ static PetscErrorCode BoxGridPlace(BoxGrid *b, const char kernel[]) {
 
 static PetscErrorCode BoxGridCreate(const FluidSpec *spec, const char kernel[], const BoxLattice *lattice,
                                     const BoxAxis axis[2], BoxGrid *b) {
+  const PetscBool dipole = lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   *b = (BoxGrid){.axis = axis, .lattice = lattice};
   PetscCall(FluidCreate(spec, &b->fluid));
   PetscCall(StokesCreate(b->fluid, &b->stokes));
   PetscCall(BoxGridPlace(b, kernel));
   b->set = (LayerSetting){.markers = b->markers, .nu = spec->nu, .unit = lattice->unit};
-  PetscCall(SinglePairsCreate(&b->set, lattice->stokeslet, lattice->half, &b->pairs));
-  PetscCall(SinglePairsPlace(b->pairs));
-  if (!lattice->dipole) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DoubleImageCreate(b->pairs->image, lattice->dipole, &b->twice));
-  DoubleImagePlace(b->twice, b->dipole);
+  PetscCall(LayerPairsCreate(dipole ? &stresslet : &stokeslet, &b->set, dipole ? lattice->dipole : lattice->stokeslet,
+                             dipole ? NULL : lattice->half, &(PairSources){.stencil = b->dipole}, NULL, &b->pairs));
+  PetscCall(LayerPairsPlace(b->pairs));
+  if (!dipole) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
   PetscCall(VecDuplicate(b->force, &b->u));
   PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
@@ -72,8 +70,7 @@ static PetscErrorCode BoxGridDestroy(BoxGrid *b) {
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(PetscFree(b->dipole));
-  PetscCall(DoubleImageDestroy(&b->twice));
-  PetscCall(SinglePairsDestroy(&b->pairs));
+  PetscCall(LayerPairsDestroy(&b->pairs));
   PetscCall(MarkersDestroy(&b->markers));
   PetscCall(LayoutDestroy(&b->layout));
   PetscCall(StokesDestroy(&b->stokes));
@@ -84,28 +81,15 @@ static PetscErrorCode BoxGridDestroy(BoxGrid *b) {
 /* What the lattice has of the parts of place j's source at place i, less what the near field gives of the walls: the
    velocities L; with the exact images where the smooth part itself is wanted. */
 static void BoxGridLattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DIPOLE_COUNT]) {
-  const PetscReal *X = b->markers->X, h = b->fluid->grid->h;
-  const PetscReal plain[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
-  PetscReal d[2] = {plain[0], plain[1]}, C[4] = {0, 0, 0, 0}, S[4];
+  const PetscReal *X = b->markers->X;
+  const PairKernel *k = b->pairs->kernel;
+  PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, free[PAIR_PARTS], C[PAIR_PARTS] = {0};
   const PetscReal fade = BoxImage(b->axis, d);
-  if (b->lattice->dipole) {
-    const PetscInt periods[2] = {(PetscInt)rint((d[0] - plain[0]) / h), (PetscInt)rint((d[1] - plain[1]) / h)};
-    PetscReal K[2][DIPOLE_COUNT], exact[2][DIPOLE_COUNT] = {{0}};
-    DoubleLatticeParts(b->lattice->dipole, BOX_LATTICE_CELLS, &b->pairs->stencil[2 * i], &b->dipole[DIPOLE_COUNT * j],
-                       periods, (PetscReal[]){d[0] / h, d[1] / h}, K);
-    for (int q = 0; q < 2 * DIPOLE_COUNT; q++) K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] /= h;
-    DoubleImageAdd(b->twice, i, j, d, PETSC_MAX_REAL, exact, K);
-    for (int c = 0; c < 2; c++)
-      for (int part = 0; part < DIPOLE_COUNT; part++) L[c][part] = fade * (K[c][part] - exact[c][part]);
-    return;
-  }
-  NearLatticePair(b->pairs, i, j, d, S);
-  NearImageAdd(b->pairs->image, NULL, i, j, d, S, C);
-  if (b->lattice->whole) NearImageAddBlake(b->pairs->image, i, j, d, -1, C);
-  for (int c = 0; c < 2; c++) {
-    L[c][c] = fade * (S[c] - C[c]);
-    L[c][1 - c] = fade * (S[2 + c] - C[2 + c]);
-  }
+  LayerPairLattice(b->pairs, k->force ? k->reach[NEAR_ONE] : BOX_LATTICE_CELLS, i, j, d, free);
+  WallImageAdd(b->pairs->image, NULL, i, j, d, free, C);
+  if (b->lattice->whole) WallImageAddExact(b->pairs->image, i, j, d, -1, C);
+  for (int q = 0; q < k->places.parts; q++) /* as seen from a wall along x */
+    L[k->places.response[q]][k->places.source[q]] = fade * (free[k->places.place[1][q]] - C[k->places.place[1][q]]);
 }
 
 /* Whether x and y are alike. */

@@ -1,5 +1,6 @@
 #include "mobility/doublelayer.h"
-#include "numerics/blas.h"
+#include "layers/latticegreen.h"
+#include "layers/nearrows.h"
 
 PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], DoubleLayer *out) {
   const Layout l = near->set.bodies->layout;
@@ -12,13 +13,15 @@ PetscErrorCode DoubleLayerCreate(NearField near, const PetscReal ratio[], Double
   for (PetscInt v = 0; v < l->bodies; v++) s->ratio[v] = v < near->set.bodies->vesicles ? ratio[v] : 1;
   PetscCall(PetscMalloc2(2 * l->M, &s->normal, l->M, &s->along));
   PetscCall(PetscCalloc3(2 * l->M, &s->jump, 2 * l->M, &s->plain, DIPOLE_COUNT * l->M, &s->tensor));
+  PetscCall(PetscCalloc1(2 * l->n + LANES, &s->velocity)); /* whole vectors */
+  PetscCall(PetscMalloc1(DIPOLE_COUNT * l->M, &s->dipole));
   if (!near->set.markers->grid->free) {
-    PetscCall(PetscMalloc1(DIPOLE_COUNT * l->M, &s->dipole));
     PetscCall(PetscCalloc1(DIPOLE_SPOTS * l->M, &s->spot));
     PetscCall(DipoleListCreate(near->set.markers->grid, &s->list));
-    PetscCall(LatticeDipoles(DOUBLE_FACE_CELLS + OFFSET_LAGS, s->lattice));
-    PetscCall(DoubleImageCreate(near->pairs->image, s->lattice, &s->image));
+    PetscCall(LatticeDipoles(BOX_LATTICE_CELLS + OFFSET_LAGS, s->lattice));
   }
+  const PairSources from = {.stencil = s->dipole, .normal = s->normal, .along = s->along, .length = s->length};
+  PetscCall(LayerPairsCreate(&stresslet, &near->set, s->lattice, NULL, &from, near->pairs, &s->pairs));
   PetscCall(PetvesEvent("DoubleLayer", &s->place));
   PetscCall(PetvesEvent("DoubleLayerApply", &s->apply));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -35,30 +38,20 @@ PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer) {
   PetscCall(StencilRowsDestroy(&s->list));
   PetscCall(PetscFree3(s->jump, s->plain, s->tensor));
   for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&s->lattice[c]));
-  PetscCall(DoubleImageDestroy(&s->image));
+  PetscCall(LayerPairsDestroy(&s->pairs));
   PetscCall(BoxPartDestroy(&s->box));
   PetscCall(PetscFree(s->block));
-  PetscCall(PetscFree(s->value));
+  PetscCall(PetscFree(s->store.value));
+  PetscCall(PetscFree(s->velocity));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
-  const BoxLattice lattice = {.unit = s->near->set.unit, .dipole = s->lattice, .half = s->near->half};
+  const BoxLattice lattice = {.unit = s->near->set.unit, .dipole = s->lattice};
   PetscFunctionBeginUser;
   PetscCall(BoxPartCreate(spec, s->near->set.markers, &lattice, &s->box));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What the functions of layers/ need of the double layer. */
-static DoublePairs PairsOf(DoubleLayer s) {
-  return (DoublePairs){.single = s->near->pairs,
-                       .lattice = s->lattice,
-                       .image = s->image,
-                       .dipole = s->dipole,
-                       .normal = s->normal,
-                       .along = s->along,
-                       .length = s->length};
 }
 
 /* Normals of the vesicles that have a jump. */
@@ -95,15 +88,17 @@ static PetscErrorCode PlaceDipoles(DoubleLayer s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The block of the jump of `row` to the velocity of own markers of `column`. */
 static PetscErrorCode DoubleLayerAddBlock(DoubleLayer s, PetscInt row, PetscInt column, PetscReal sign,
                                           const PetscReal shift[2]) {
   const Layout l = s->near->set.bodies->layout;
+  NearBlock *b;
   PetscFunctionBeginUser;
-  if (s->ratio[column] == 1 || row < l->own || row >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->ratio[row] == 1 || column < l->own || column >= l->end) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ArrayReserve((size_t)s->blocks + 1, &s->block_room, &s->block));
-  s->block[s->blocks++] = (DoubleBlock){
-      .row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]}, .at = s->values};
-  s->values += 4 * (size_t)LayoutCount(l, row) * (size_t)LayoutCount(l, column);
+  b = &s->block[s->blocks++];
+  *b = (NearBlock){.row = row, .column = column, .shift = {sign * shift[0], sign * shift[1]}, .at = s->values};
+  s->values += NearBlockValues(l, b);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,19 +110,18 @@ static PetscErrorCode FindBlocks(DoubleLayer s) {
   s->values = 0;
   for (PetscInt k = 0; k < f->list.count.blocks; k++) {
     const NearBlock *b = &f->list.block[k];
-    PetscCall(DoubleLayerAddBlock(s, b->row, b->column, 1, b->shift));
-    if (!NearBlockIsSelf(b)) PetscCall(DoubleLayerAddBlock(s, b->column, b->row, -1, b->shift));
+    PetscCall(DoubleLayerAddBlock(s, b->column, b->row, -1, b->shift));
+    if (!NearBlockIsSelf(b)) PetscCall(DoubleLayerAddBlock(s, b->row, b->column, 1, b->shift));
   }
-  PetscCall(ArrayReserve(s->values, &s->value_room, &s->value));
+  PetscCall(ArrayReserve(s->values, &s->store.value_room, &s->store.value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A block's values; or, without lattice, those of D alone. */
-static PetscErrorCode FillBlock(DoubleLayer s, const DoubleBlock *b, PetscBool lattice, PetscReal value[]) {
-  const DoublePairs pairs = PairsOf(s);
+static PetscErrorCode FillBlock(DoubleLayer s, const NearBlock *b, PetscBool lattice, NearStore *store) {
   const NearField f = s->near;
   PetscFunctionBeginUser;
-  PetscCall(DoubleBlockFill(&pairs, b, lattice && !s->near->set.markers->grid->free ? PETSC_TRUE : PETSC_FALSE, value));
+  PetscCall(NearBlockFill(s->pairs, b, lattice ? PETSC_FALSE : PETSC_TRUE, store));
   for (PetscInt k = 0; k < f->list.count.closes; k++) { /* those in this block; with a box part all images share one */
     const FinePair *p = &f->list.close[k].fine;
     for (int turned = 0; turned < 2; turned++) {
@@ -137,9 +131,9 @@ static PetscErrorCode FillBlock(DoubleLayer s, const DoubleBlock *b, PetscBool l
         fine.column = p->row;
         for (int d = 0; d < 2; d++) fine.shift[d] = -p->shift[d];
       }
-      if (b->row != fine.row || b->column != fine.column) continue;
-      if (!f->box && (b->shift[0] != fine.shift[0] || b->shift[1] != fine.shift[1])) continue;
-      PetscCall(DoubleBlockRefine(&pairs, &fine, value));
+      if (b->column != fine.row || b->row != fine.column) continue;
+      if (!f->box && (b->shift[0] != -fine.shift[0] || b->shift[1] != -fine.shift[1])) continue;
+      PetscCall(NearBlockRefine(s->pairs, b, &fine, store));
       break;
     }
   }
@@ -152,9 +146,9 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscCall(PlaceNormals(s));
   if (s->box) PetscCall(BoxPartPlace(s->box));
   PetscCall(PlaceDipoles(s));
-  if (s->image) DoubleImagePlace(s->image, s->dipole);
+  PetscCall(LayerPairsPlace(s->pairs));
   PetscCall(FindBlocks(s));
-  for (PetscInt k = 0; k < s->blocks; k++) PetscCall(FillBlock(s, &s->block[k], PETSC_TRUE, s->value + s->block[k].at));
+  for (PetscInt k = 0; k < s->blocks; k++) PetscCall(FillBlock(s, &s->block[k], PETSC_TRUE, &s->store));
   PetscCall(PetscLogEventEnd(s->place, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -207,11 +201,9 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScala
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
   PetscCall(DoubleLayerSetDipoles(s, U));
-  for (PetscInt k = 0; k < s->blocks; k++) {
-    const DoubleBlock *b = &s->block[k];
-    PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, b->row), 2 * LayoutCount(l, b->column), alpha,
-                           s->value + b->at, s->plain + 2 * l->start[b->column], y + 2 * LayoutOffset(l, b->row)));
-  }
+  PetscCall(PetscArrayzero(s->velocity, 2 * l->n + LANES));
+  for (PetscInt k = 0; k < s->blocks; k++) NearBlockApply(l, &s->block[k], &s->store, alpha, s->plain, s->velocity);
+  for (PetscInt k = 0; k < 2 * l->n; k++) y[k] += s->velocity[k];
   if (s->box) PetscCall(BoxPartApply(s->box, alpha, s->tensor + DIPOLE_COUNT * l->first, y));
   PetscCall(PetscLogEventEnd(s->apply, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -261,22 +253,20 @@ PetscErrorCode DoubleLayerStress(DoubleLayer s, const PetscScalar U[], PetscReal
 PetscErrorCode DoubleLayerAdd(DoubleLayer s, PetscReal scale, PetscBool lattice, PetscInt first, PetscInt n,
                               PetscReal out[]) {
   const Layout l = s->near->set.bodies->layout;
+  const MarkerRange range = {first, n};
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->blocks; k++) {
-    const DoubleBlock *b = &s->block[k];
-    const PetscInt rows = 2 * LayoutCount(l, b->row), columns = 2 * LayoutCount(l, b->column);
-    const PetscInt i0 = 2 * (l->start[b->row] - first), j0 = 2 * (l->start[b->column] - first);
-    PetscReal *value = s->value + b->at, *free = NULL;
-    if (i0 < 0 || j0 < 0 || i0 >= 2 * n || j0 >= 2 * n) continue;
+    NearBlock b = s->block[k];
+    NearStore store = s->store, free = {0};
+    if (!NearBlockMeets(l, &b, &range, &range)) continue;
     if (!lattice && !s->near->set.markers->grid->free) {
-      PetscCall(PetscMalloc1(rows * columns, &free));
-      PetscCall(FillBlock(s, b, PETSC_FALSE, free));
-      value = free;
+      b.at = 0;
+      PetscCall(PetscMalloc1(NearBlockValues(l, &b), &free.value));
+      PetscCall(FillBlock(s, &b, PETSC_FALSE, &free));
+      store = free;
     }
-    for (PetscInt j = 0; j < columns; j++)
-      for (PetscInt i = 0; i < rows; i++)
-        out[(j0 + j) * 2 * n + i0 + i] += scale * (1 - s->ratio[b->column]) * value[j * rows + i];
-    PetscCall(PetscFree(free));
+    NearBlockAdd(l, &b, &store, scale * (1 - s->ratio[b.row]), &range, &range, out);
+    PetscCall(PetscFree(free.value));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,12 +6,11 @@
        (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q,
 
    D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, Q what takes the
-   net flux off a vesicle's J, as spreading on the grid does (doubleblock.h). Its pairs of bodies are those of the near
+   net flux off a vesicle's J, as spreading on the grid does (nearblock.h). Its pairs of bodies are those of the near
    field (nearfield.h). In unbounded fluid L = 0. Every rank gathers all of J.
 
    Create, perhaps AddBoxPart, Place where the near field has been placed, Set the jump, then Apply, Spread, Rows. */
 #pragma once
-#include "layers/doubleblock.h"
 #include "mobility/boxpart.h"
 #include "mobility/nearfield.h"
 #include "markers/dipolerows.h"
@@ -21,21 +20,22 @@ struct _p_DoubleLayer {
   NearField near;   /* borrowed: markers, membranes, their pairs and stencils */
   PetscReal *ratio; /* [vesicles] viscosity inside over that outside */
   OffsetTable lattice[2];
-  DoubleImage image;     /* what the walls add to each pair; NULL in unbounded fluid */
+  LayerPairs pairs;
   PaddedStencil *dipole; /* [DIPOLE_COUNT M] unfolded; */
   Stencil *spot;         /* [DIPOLE_SPOTS M] on the grid, zero where there is no jump; */
-  StencilRows list;      /* these by rows; none of the three in unbounded fluid */
+  StencilRows list;      /* these by rows; spots and rows not in unbounded fluid */
   PetscReal *normal;     /* [2M] outward n times the marker's share w of the length */
   PetscReal *along;      /* [M] w (length); of vesicles of ratio 1 these are not made */
   PetscReal *length;     /* [vesicles] sum of w */
-  DoubleBlock *block;
-  PetscReal *value;
+  NearBlock *block;
+  NearStore store;
   PetscInt blocks;
-  size_t block_room, values, value_room;
-  PetscScalar *jump;  /* [2M] work: J of all markers, less its flux, */
-  PetscScalar *plain; /* [2M] J, */
-  PetscReal *tensor;  /* [DIPOLE_COUNT M] and the dipoles of the former */
-  BoxPart box;        /* NULL without box part */
+  size_t block_room, values;
+  PetscScalar *velocity; /* [2n] work */
+  PetscScalar *jump;     /* [2M] work: J of all markers, less its flux, */
+  PetscScalar *plain;    /* [2M] J, */
+  PetscReal *tensor;     /* [DIPOLE_COUNT M] and the dipoles of the former */
+  BoxPart box;           /* NULL without box part */
   PetscLogEvent place, apply;
 };
 
@@ -76,8 +76,7 @@ PETSC_EXTERN PetscErrorCode DoubleLayerStress(DoubleLayer layer, const PetscScal
                                               PetscReal shortfall[2]);
 
 /* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the
-   markers first .. first
-   + n
-   - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective. */
+   markers first .. first + n - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective.
+ */
 PETSC_EXTERN PetscErrorCode DoubleLayerAdd(DoubleLayer layer, PetscReal scale, PetscBool lattice, PetscInt first,
                                            PetscInt n, PetscReal out[]);

@@ -1,5 +1,5 @@
 #include "mobility/neardistant.h"
-#include "mobility/nearrows.h"
+#include "layers/nearrows.h"
 
 #define DEGREE 7
 #define MOST ((DEGREE + 1) * (DEGREE + 2) / 2)

@@ -9,7 +9,6 @@
    Add all pairs, Make, Fill each from its C, then Apply. */
 #pragma once
 #include "base/lanes.h"
-#include "layers/nearimage.h"
 #include "markers/layout.h"
 
 /* The polynomials of a curve. */

@@ -1,7 +1,7 @@
 #include "mobility/nearfield.h"
 #include "base/agree.h"
 #include "layers/latticegreen.h"
-#include "mobility/nearrows.h"
+#include "layers/nearrows.h"
 
 PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, NearField *out) {
   const Layout l = bodies->layout;
@@ -12,11 +12,7 @@ PetscErrorCode NearFieldCreate(Markers markers, Bodies bodies, PetscReal nu, Nea
   *out = f;
   f->set = (LayerSetting){.markers = markers, .bodies = bodies, .nu = nu, .unit = g->h};
   if (!g->free) PetscCall(LatticeStokeslet(BOX_LATTICE_CELLS + OFFSET_LAGS, &f->lattice));
-  if (!g->free && (g->wall[0] || g->wall[1])) {
-    PetscCall(PetscNew(&f->half));
-    PetscCall(ImageTableFill(&f->lattice, f->half));
-  }
-  PetscCall(SinglePairsCreate(&f->set, &f->lattice, f->half, &f->pairs));
+  PetscCall(LayerPairsCreate(&stokeslet, &f->set, &f->lattice, NULL, NULL, NULL, &f->pairs));
   PetscCall(NearListCreate(f->pairs, &f->list));
   PetscCall(PetscCalloc2(2 * l->M + LANES, &f->force, 2 * l->n + LANES, &f->velocity)); /* whole vectors */
   PetscCall(PetvesEvent("NearField", &f->event[0]));
@@ -32,8 +28,7 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
   PetscCall(PetscFree(f->store.value));
   PetscCall(PetscFree(f->store.single));
   PetscCall(PetscFree2(f->force, f->velocity));
-  PetscCall(SinglePairsDestroy(&f->pairs));
-  PetscCall(PetscFree(f->half));
+  PetscCall(LayerPairsDestroy(&f->pairs));
   PetscCall(OffsetTableDestroy(&f->lattice));
   PetscCall(BoxPartDestroy(&f->box));
   PetscCall(PetscFree(*near));
@@ -41,7 +36,8 @@ PetscErrorCode NearFieldDestroy(NearField *near) {
 }
 
 PetscErrorCode NearFieldCreateBoxPart(NearField f, const FluidSpec *spec, PetscBool whole, BoxPart *box) {
-  const BoxLattice lattice = {.unit = f->set.unit, .stokeslet = &f->lattice, .half = f->half, .whole = whole};
+  const BoxLattice lattice = {
+      .unit = f->set.unit, .stokeslet = &f->lattice, .half = f->pairs->image->table, .whole = whole};
   PetscFunctionBeginUser;
   PetscCall(BoxPartCreate(spec, f->set.markers, &lattice, box));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -55,31 +51,26 @@ PetscErrorCode NearFieldAddBoxPart(NearField f, const FluidSpec *spec) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A distant pair's block in a store of its own, in double precision, which the caller frees. */
-static PetscErrorCode DistantBlock(NearField f, PetscInt pair, NearBlock *block, NearStore *store) {
+/* A distant pair's block, in a store of its own. */
+static NearBlock DistantBlock(NearField f, PetscInt pair) {
   const NearDistantPair *p = &f->list.distant->pair[pair];
-  const Layout l = f->set.bodies->layout;
-  PetscFunctionBeginUser;
-  *block = (NearBlock){.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}};
-  *store = (NearStore){0};
-  PetscCall(PetscMalloc1(2 * LayoutCount(l, p->row) * NearStride(LayoutCount(l, p->column)), &store->value));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return (NearBlock){.row = p->row, .column = p->column, .shift = {p->shift[0], p->shift[1]}, .symmetric = PETSC_TRUE};
 }
 
 /* Distant pairs, once; crossed: with another rank's marker. */
 static PetscErrorCode PlaceDistant(NearField f, PetscBool *crossed) {
   const Layout l = f->set.bodies->layout;
   NearDistant d = f->list.distant;
-  NearStore store;
-  NearBlock block;
+  NearStore store = {0};
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < d->pairs; k++)
     if (d->pair[k].column < l->own || d->pair[k].column >= l->end) *crossed = PETSC_TRUE;
   if (d->value || !d->pairs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NearDistantMake(d));
   for (PetscInt k = 0; k < d->pairs; k++) {
-    PetscCall(DistantBlock(f, k, &block, &store));
-    PetscCall(NearBlockFill(f->pairs, &block, &store));
+    const NearBlock block = DistantBlock(f, k);
+    PetscCall(PetscMalloc1(NearBlockValues(l, &block), &store.value));
+    PetscCall(NearBlockFill(f->pairs, &block, PETSC_FALSE, &store));
     PetscCall(NearDistantFill(d, k, NearStride(LayoutCount(l, block.column)), store.value));
     PetscCall(PetscFree(store.value));
   }
@@ -94,7 +85,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(f->event[0], 0, 0, 0, 0));
   if (f->box) PetscCall(BoxPartPlace(f->box));
-  PetscCall(SinglePairsPlace(f->pairs));
+  PetscCall(LayerPairsPlace(f->pairs));
   PetscCall(NearListFind(&f->list, &first));
   PetscCall(ArrayReserve(f->list.count.values, &s->value_room, &s->value));
   PetscCall(ArrayReserve(f->list.count.singles, &s->single_room, &s->single));
@@ -102,7 +93,7 @@ PetscErrorCode NearFieldPlace(NearField f) {
     const NearBlock *b = &f->list.block[k];
     if (b->column < l->own || b->column >= l->end) crossed = PETSC_TRUE;
     if (k < first) continue;
-    PetscCall(NearBlockFill(f->pairs, b, s));
+    PetscCall(NearBlockFill(f->pairs, b, PETSC_FALSE, s));
   }
   for (PetscInt k = 0; k < f->list.count.closes; k++)
     if (f->list.close[k].block >= first)
@@ -111,23 +102,6 @@ PetscErrorCode NearFieldPlace(NearField f) {
   PetscCall(AgreeFlag(l->comm, crossed, &f->crossed));
   PetscCall(PetscLogEventEnd(f->event[0], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* velocity[2n] += alpha C force[2M] of one block: both ways where both bodies are own ones. */
-static inline void ApplyBlock(Layout l, const NearBlock *b, const PetscBool single, const void *value, PetscReal alpha,
-                              const PetscScalar force[], PetscScalar velocity[]) {
-  const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
-  PetscInt rows;
-  NearRow r = NearBlockBegin(l, b);
-  do {
-    PetscScalar *other = both ? velocity + 2 * (r.column - l->first) : NULL, *own = velocity + 2 * (r.row - l->first);
-    const BlockRows values = {single, value, r.at, r.stride};
-    rows = NearBlockIsSelf(b) || r.row + 2 > l->start[b->row + 1] ? 1 : 2;
-    if (rows == 2)
-      ApplyRows(2, values, alpha, force + 2 * r.row, force + 2 * r.column, own, other);
-    else
-      ApplyRows(1, values, alpha, force + 2 * r.row, force + 2 * r.column, own, other);
-  } while ((rows == 1 || NearBlockNext(l, b, &r)) && NearBlockNext(l, b, &r));
 }
 
 PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
@@ -139,50 +113,13 @@ PetscErrorCode NearFieldApply(NearField f, PetscReal alpha, const PetscScalar F[
   else
     PetscCall(PetscArraycpy(f->force + 2 * l->first, F, 2 * l->n));
   PetscCall(PetscArrayzero(f->velocity, 2 * l->n + LANES));
-  for (PetscInt k = 0; k < f->list.count.blocks; k++) {
-    const NearBlock *b = &f->list.block[k];
-    if (b->single)
-      ApplyBlock(l, b, PETSC_TRUE, f->store.single, alpha, f->force, f->velocity);
-    else
-      ApplyBlock(l, b, PETSC_FALSE, f->store.value, alpha, f->force, f->velocity);
-  }
+  for (PetscInt k = 0; k < f->list.count.blocks; k++)
+    NearBlockApply(l, &f->list.block[k], &f->store, alpha, f->force, f->velocity);
   PetscCall(NearDistantApply(f->list.distant, alpha, f->force, f->velocity));
   for (PetscInt k = 0; k < 2 * l->n; k++) U[k] += f->velocity[k];
   if (f->box) PetscCall(BoxPartApply(f->box, alpha, F, U));
   PetscCall(PetscLogEventEnd(f->event[1], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The place of row i and column j in a matrix between two ranges. */
-static inline PetscInt NearFieldEntry(const MarkerRange *rows, const MarkerRange *columns, PetscInt i, PetscInt j) {
-  return (j - 2 * columns->first) * 2 * rows->n + i - 2 * rows->first;
-}
-
-/* Whether a body is in a range, which is of whole bodies. */
-static inline PetscBool NearFieldHolds(Layout l, PetscInt body, const MarkerRange *range) {
-  return l->start[body] >= range->first && l->start[body] < range->first + range->n ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* out += scale times a block, in its own rows. */
-static void NearFieldAddBlock(Layout l, const NearBlock *b, const NearStore *s, PetscReal scale,
-                              const MarkerRange *rows, const MarkerRange *columns, PetscReal out[]) {
-  const PetscBool both = b->column >= l->own && b->column < l->end ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool there = NearFieldHolds(l, b->row, rows) && NearFieldHolds(l, b->column, columns) ? PETSC_TRUE
-                                                                                                   : PETSC_FALSE;
-  const PetscBool back = both && NearFieldHolds(l, b->column, rows) && NearFieldHolds(l, b->row, columns) ? PETSC_TRUE
-                                                                                                          : PETSC_FALSE;
-  NearRow r = NearBlockBegin(l, b);
-  if (!there && !back) return;
-  do
-    for (PetscInt k = 0; k < 2 * r.count; k++)
-      for (int c = 0; c < 2; c++) {
-        const size_t at = r.at + (size_t)(c * r.stride + k);
-        const PetscReal value = scale * (b->single ? s->single[at] : s->value[at]);
-        const PetscInt i = 2 * r.row + c, j = 2 * r.column + k;
-        if (there) out[NearFieldEntry(rows, columns, i, j)] += value;
-        if (back) out[NearFieldEntry(rows, columns, j, i)] += value;
-      }
-  while (NearBlockNext(l, b, &r));
 }
 
 /* The first block, after the fixed ones, of the vesicle that a marker belongs to, or of a later one. */
@@ -204,21 +141,19 @@ PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, 
   const Layout l = f->set.bodies->layout;
   const PetscInt from = PetscMin(rows->first, columns->first);
   const PetscInt to = PetscMax(rows->first + rows->n, columns->first + columns->n);
-  NearStore store;
+  NearStore store = {0};
   NearBlock block;
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < f->list.fixed.blocks; b++)
-    NearFieldAddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+    NearBlockAdd(l, &f->list.block[b], &f->store, scale, rows, columns, out);
   for (PetscInt b = FirstBlock(f, from); b < f->list.count.blocks && l->start[f->list.block[b].row] < to; b++)
-    NearFieldAddBlock(l, &f->list.block[b], &f->store, scale, rows, columns, out);
+    NearBlockAdd(l, &f->list.block[b], &f->store, scale, rows, columns, out);
   for (PetscInt k = 0; k < f->list.distant->pairs; k++) { /* whose block is made for that */
-    const NearDistantPair *p = &f->list.distant->pair[k];
-    if (!(NearFieldHolds(l, p->row, rows) && NearFieldHolds(l, p->column, columns)) &&
-        !(NearFieldHolds(l, p->row, columns) && NearFieldHolds(l, p->column, rows)))
-      continue;
-    PetscCall(DistantBlock(f, k, &block, &store));
-    PetscCall(NearDistantExpand(f->list.distant, k, NearStride(LayoutCount(l, p->column)), store.value));
-    NearFieldAddBlock(l, &block, &store, scale, rows, columns, out);
+    block = DistantBlock(f, k);
+    if (!NearBlockMeets(l, &block, rows, columns)) continue;
+    PetscCall(PetscMalloc1(NearBlockValues(l, &block), &store.value));
+    PetscCall(NearDistantExpand(f->list.distant, k, NearStride(LayoutCount(l, block.column)), store.value));
+    NearBlockAdd(l, &block, &store, scale, rows, columns, out);
     PetscCall(PetscFree(store.value));
   }
   if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));

@@ -7,7 +7,7 @@
    regularised delta function on the infinite lattice. The grid's own mobility is L and a smooth part of walls and
    images, so delta function, angle to the grid, place in the cells and spacing of the markers cancel. C is of pairs of
    markers of one vesicle, and of vesicles near one another, images included, each pair with its images in the grid's
-   walls (singlepairs.h); in unbounded fluid, where there is no grid to take from, C = S of all pairs. With a box part
+   walls (layerpairs.h); in unbounded fluid, where there is no grid to take from, C = S of all pairs. With a box part
    (boxpart.h) D comes on top, which takes the error of second order off the smooth part.
 
    A rank has the blocks (nearblock.h) whose first body is its own. A product gathers all forces where a block joins
@@ -22,8 +22,7 @@ typedef struct _p_NearField *NearField;
 struct _p_NearField {
   LayerSetting set;
   OffsetTable lattice; /* the lattice's Stokeslet; empty in unbounded fluid */
-  ImageTable *half;    /* that of the half space in front of a wall; NULL without walls */
-  SinglePairs pairs;
+  LayerPairs pairs;
   NearList list;
   NearStore store;
   PetscBool crossed;      /* whether any rank has a pair with another rank's marker */

@@ -30,14 +30,12 @@ static PetscErrorCode NearListAddBlock(NearList *f, PetscInt v, PetscInt w, cons
                                : PETSC_FALSE;
   size_t *values = single ? &f->count.singles : &f->count.values;
   NearBlock *b;
-  NearRow r;
   PetscFunctionBeginUser;
   PetscCall(ArrayReserve((size_t)f->count.blocks + 1, &f->block_room, &f->block));
   b = &f->block[f->count.blocks++];
-  *b = (NearBlock){.row = v, .column = w, .shift = {shift[0], shift[1]}, .single = single, .at = *values};
-  r = NearBlockBegin(l, b);
-  while (NearBlockNext(l, b, &r)) continue;
-  *values = r.at;
+  *b = (NearBlock){
+      .row = v, .column = w, .shift = {shift[0], shift[1]}, .symmetric = PETSC_TRUE, .single = single, .at = *values};
+  *values += NearBlockValues(l, b);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,7 +108,7 @@ static PetscErrorCode Images(NearList *f, PetscInt v, PetscInt w, Image image[MO
 static PetscBool AreDistant(NearList *f, PetscInt v, PetscInt w, PetscReal gap) {
   const Bodies m = f->pairs->set->bodies;
   const PetscInt body[2] = {v, w};
-  PetscReal least = f->pairs->far[NEAR_TWO].reach * f->pairs->set->markers->grid->h;
+  PetscReal least = f->pairs->kernel->reach[NEAR_TWO] * f->pairs->set->markers->grid->h;
   if (v == w || !f->pairs->set->box || !m->resting[v] || !m->resting[w]) return PETSC_FALSE;
   for (int end = 0; end < 2; end++) {
     const PetscInt one = body[end];
@@ -118,7 +116,8 @@ static PetscBool AreDistant(NearList *f, PetscInt v, PetscInt w, PetscReal gap) 
     if (m->kind[one].type != CURVE_CLOSED) return PETSC_FALSE;
     least = PetscMax(least, PetscHypotReal(b->high[0] - b->low[0], b->high[1] - b->low[1]));
     for (PetscInt k = m->layout->start[one]; k < m->layout->start[one + 1]; k++)
-      if (!NearImageIsFar(f->pairs->image, f->pairs->set->markers->X + 2 * k, &f->pairs->bounds[body[1 - end]], NULL))
+      if (!WallsAreFar(f->pairs->set->markers->grid, f->pairs->set->markers->X + 2 * k,
+                       &f->pairs->bounds[body[1 - end]], NULL))
         return PETSC_FALSE;
   }
   return gap >= least ? PETSC_TRUE : PETSC_FALSE;
@@ -213,7 +212,7 @@ static PetscErrorCode AddBlocks(NearList *f, PetscBool fixed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearListCreate(SinglePairs pairs, NearList *f) {
+PetscErrorCode NearListCreate(LayerPairs pairs, NearList *f) {
   PetscFunctionBeginUser;
   *f = (NearList){.pairs = pairs};
   PetscCall(NearDistantCreate(pairs->set->bodies->layout, &f->distant));

@@ -22,8 +22,8 @@ typedef struct {
 /* What two obstacles that rest do to one another stays as it is: these come first, and distant pairs among them are
    apart. */
 typedef struct {
-  SinglePairs pairs; /* borrowed */
-  NearBlock *block;  /* fixed ones, then others in the order of their rows */
+  LayerPairs pairs; /* borrowed */
+  NearBlock *block; /* fixed ones, then others in the order of their rows */
   NearClose *close;
   NearDistant distant;
   NearCounts count, fixed;
@@ -34,6 +34,6 @@ typedef struct {
 /* NearListCreate - empty. NearListFind - the blocks where the pairs have been placed, without their values; those of
    two obstacles that rest are found the first time. `first`: the first of all blocks that has to get its values. Not
    collective. */
-PETSC_EXTERN PetscErrorCode NearListCreate(SinglePairs pairs, NearList *list);
+PETSC_EXTERN PetscErrorCode NearListCreate(LayerPairs pairs, NearList *list);
 PETSC_EXTERN PetscErrorCode NearListDestroy(NearList *list);
 PETSC_EXTERN PetscErrorCode NearListFind(NearList *list, PetscInt *first);

@@ -107,15 +107,13 @@ static void AddJumpsAt(CoarseCorrection s, const PetscReal x[2], PetscInt first,
   for (PetscInt k = first; k < end; k += LANES) {
     const PetscInt at = PetscMin(k, end - LANES);
     const LanesBits so = (LanesBits)(order >= (Lanes){0} + (PetscReal)(k - at));
-    Lanes rx, ry, nx, ny, jx, jy;
+    Lanes rx, ry, nx, ny, jx, jy, D[3];
     LanesPairs(X + 2 * at, &rx, &ry);
     LanesPairs(N + 2 * at, &nx, &ny);
     LanesPairs(s->jump + 2 * at, &jx, &jy);
-    rx -= x[0];
-    ry -= x[1];
-    const Lanes r2 = rx * rx + ry * ry, q = LanesWhere(so, (rx * nx + ry * ny) * (rx * jx + ry * jy) / (r2 * r2));
-    sum[0] += q * rx;
-    sum[1] += q * ry;
+    StressletFour(x[0] - rx, x[1] - ry, (const Lanes[2]){nx, ny}, D);
+    sum[0] += LanesWhere(so, D[0] * jx + D[2] * jy);
+    sum[1] += LanesWhere(so, D[2] * jx + D[1] * jy);
   }
   u[0] -= LanesSum(sum[0]) / PETSC_PI;
   u[1] -= LanesSum(sum[1]) / PETSC_PI;

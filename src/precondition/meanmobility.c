@@ -1,5 +1,5 @@
 #include "precondition/meanmobility.h"
-#include "layers/nearblock.h"
+#include "layers/layerpairs.h"
 
 #define TABLE_NEAR 14 /* cells up to which stencils are summed where the near field is exact */
 #define BOX_NEAR 8    /* cells up to which a pair has the lattice's sums */
@@ -97,13 +97,13 @@ static void BoxPair(NearField f, PetscInt i, PetscInt j, PetscReal value[4]) {
   PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, L[4], C[4] = {0, 0, 0, 0};
   const PetscReal fade = BoxImage(f->set.box, d);
   if (d[0] * d[0] + d[1] * d[1] < PetscSqr(BOX_NEAR * h)) {
-    NearLatticePair(f->pairs, i, j, d, L);
-    NearImageAdd(f->pairs->image, NULL, i, j, d, L, C);
+    LayerPairLattice(f->pairs, f->pairs->kernel->reach[NEAR_ONE], i, j, d, L);
+    WallImageAdd(f->pairs->image, NULL, i, j, d, L, C);
   } else {
     StokesletOne(&f->set, d, 0, L);
     L[3] = L[2];
   }
-  NearImageAddBlake(f->pairs->image, i, j, d, -1, C);
+  WallImageAddExact(f->pairs->image, i, j, d, -1, C);
   for (int q = 0; q < 4; q++) value[q] = h * h * fade * (L[q] - C[q]);
 }
 

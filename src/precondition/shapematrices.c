@@ -1,8 +1,7 @@
 #include "precondition/shapeset.h"
 #include "problem/contrast.h"
 #include "precondition/denseblock.h"
-#include "layers/doubleblock.h"
-#include "layers/singlepairs.h"
+#include "layers/layerpairs.h"
 #include "numerics/blas.h"
 
 /* What ContrastMatrix has of a vesicle of this shape, motion[2n][2n]. */
@@ -15,7 +14,7 @@ static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscRea
   PetscCall(PetscCalloc3(n * n, &D, n, &normal, n / 2, &along));
   if (jump != 0) {
     PetscCall(DoubleGeometry(m->spectral[q->like], n / 2, q->X, normal, along));
-    PetscCall(DoubleSelf(m->spectral[q->like], n / 2, q->X, normal, D));
+    PetscCall(LayerSelf(&stresslet, &s->coupling->mobility->near->set, m->spectral[q->like], n / 2, q->X, normal, D));
   }
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) motion[j * n + i] = (i == j ? weight : 0) - jump * D[i * n + j];
@@ -91,7 +90,7 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(PetscMalloc2(4 * n * n, &M, 4 * n * n, &motion));
   PetscCall(PetscCalloc2(2 * n * all, &V, n * all, &sigma));
   PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
-  PetscCall(SelfLayer(&s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, M));
+  PetscCall(LayerSelf(&stokeslet, &s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, NULL, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
   PetscCall(ShapeMotion(s, q, motion));
   LawPlace(block.law, q->X);

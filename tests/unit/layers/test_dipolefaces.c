@@ -2,7 +2,7 @@
    pair; dipoles by rows of a grid. */
 #include "facts.h"
 #include "layers/dipolefaces.h"
-#include "layers/doubleblock.h"
+#include "layers/layerpairs.h"
 #include "markers/dipolerows.h"
 
 #define MARKERS 11
@@ -47,12 +47,15 @@ static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
   for (PetscInt j = 0; j < MARKERS; j++) {
     DipoleFacesAnswer(&faces, lattice, dipole[j], a->cells, a->N, scale, free);
     for (PetscInt i = 0; i < MARKERS; i++) {
-      PetscReal K[2][DIPOLE_COUNT], M[4];
+      const Lanes N[2] = {scale * a->N[0] + (Lanes){0}, scale * a->N[1] + (Lanes){0}};
+      PetscReal K[2][DIPOLE_COUNT];
+      Lanes part[PAIR_PARTS], M[4];
       StencilDipoleSums(lattice, &response[2 * i], dipole[j], a->cells, K);
-      DipoleContract((const PetscReal(*)[DIPOLE_COUNT])K, a->N, scale, M);
+      for (int q = 0; q < 2 * DIPOLE_COUNT; q++) part[q] = K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] + (Lanes){0};
+      PairContract(&stresslet, part, N, M);
       for (int q = 0; q < 4; q++) {
-        worst = PetscMax(worst, PetscAbsReal(answer[q][i] - M[q]));
-        most = PetscMax(most, PetscAbsReal(M[q]));
+        worst = PetscMax(worst, PetscAbsReal(answer[q][i] - M[q][0]));
+        most = PetscMax(most, PetscAbsReal(M[q][0]));
       }
     }
   }
@@ -64,27 +67,29 @@ static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs across an ellipse, .78 to 1.18 times this apart (cells), by both. */
+/* Pairs of markers across an ellipse, 0.78 to 1.18 times this apart (cells), by both. */
 static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diameter, PetscReal bound) {
   const Case a = {.half = {0.5 * diameter, 0.5 * diameter}};
-  const PetscInt none[2] = {0, 0};
-  PetscReal worst = 0, most = 0;
+  PaddedStencil response[2 * MARKERS], dipole[DIPOLE_COUNT * MARKERS];
+  PetscReal X[2 * MARKERS], worst = 0, most = 0;
+  struct _p_Grid grid = {.h = 1};
+  struct _p_Markers markers = {.grid = &grid, .X = X};
+  const LayerSetting set = {.markers = &markers, .nu = 1, .unit = 1};
+  struct _p_LayerPairs pairs = {
+      .kernel = &stresslet, .set = &set, .lattice = lattice, .from.stencil = dipole, .stencil = response};
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < MARKERS; k++) Place(&a, k, response + 2 * k, dipole + DIPOLE_COUNT * k, X + 2 * k);
   for (PetscInt j = 0; j < MARKERS; j++)
     for (int half = 0; half < 2; half++) {
       const PetscInt i = (j + MARKERS / 2 + half) % MARKERS;
-      PaddedStencil response[2], dipole[DIPOLE_COUNT], other[2], unused[DIPOLE_COUNT];
-      PetscReal X[2][2], sum[2][DIPOLE_COUNT], form[2][DIPOLE_COUNT];
-      Place(&a, i, response, unused, X[0]);
-      Place(&a, j, other, dipole, X[1]);
-      const PetscReal d[2] = {X[0][0] - X[1][0], X[0][1] - X[1][1]};
-      DoubleLatticeParts(lattice, 100, response, dipole, none, d, sum);
-      DoubleLatticeParts(lattice, 0, response, dipole, none, d, form);
-      for (int c = 0; c < 2; c++)
-        for (int k = 0; k < DIPOLE_COUNT; k++) {
-          worst = PetscMax(worst, PetscAbsReal(form[c][k] - sum[c][k]));
-          most = PetscMax(most, PetscAbsReal(sum[c][k]));
-        }
+      const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
+      PetscReal sum[PAIR_PARTS], form[PAIR_PARTS];
+      LayerPairLattice(&pairs, 100, i, j, d, sum);
+      LayerPairLattice(&pairs, 0, i, j, d, form);
+      for (int k = 0; k < stresslet.places.parts; k++) {
+        worst = PetscMax(worst, PetscAbsReal(form[k] - sum[k]));
+        most = PetscMax(most, PetscAbsReal(sum[k]));
+      }
     }
   CHECK(worst < bound * most, "pairs about %g cells apart have the closed form: to %.1e of the largest",
         (double)diameter, (double)(worst / most));

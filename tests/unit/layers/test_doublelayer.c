@@ -44,23 +44,23 @@ static PetscErrorCode CheckTables(void) {
 /* The lattice next to a wall: no divergence but of xx and yy in their own cell, nothing through the wall. */
 static PetscErrorCode CheckHalfTable(void) {
   OffsetTable free[2];
-  DipoleImageTable *t;
+  ImageTable *t;
   PetscFunctionBeginUser;
   PetscCall(LatticeDipoles(2 * IMAGE_SHIFT, free));
   PetscCall(PetscNew(&t));
-  PetscCall(DipoleImageFill(free, t));
+  PetscCall(stresslet.image_fill(free, t));
   for (int part = 0; part < DIPOLE_COUNT; part++) {
     PetscReal most = 0, wall = 0;
     for (int source = 0; source < IMAGE_ROWS; source++)
       for (int row = 0; row < IMAGE_ROWS - 1; row++)
         for (int i = 1 - IMAGE_SHIFT; i <= IMAGE_SHIFT; i++) {
-          const PetscReal *along = t->value[part][0][row][source] + IMAGE_SHIFT + i;
-          const PetscReal div = along[0] - along[-1] + t->value[part][1][row + 1][source][IMAGE_SHIFT + i] -
-                                t->value[part][1][row][source][IMAGE_SHIFT + i];
+          const PetscReal *along = t->value[part][row][source] + IMAGE_SHIFT + i;
+          const PetscReal div = along[0] - along[-1] + t->value[DIPOLE_COUNT + part][row + 1][source][IMAGE_SHIFT + i] -
+                                t->value[DIPOLE_COUNT + part][row][source][IMAGE_SHIFT + i];
           const PetscBool own = part != DIPOLE_XY && !i && row == source ? PETSC_TRUE : PETSC_FALSE;
           if (i < 2 - IMAGE_SHIFT) continue; /* xy has no entry below */
           most = PetscMax(most, PetscAbsReal(div - 0.5 * own));
-          if (!row) wall = PetscMax(wall, PetscAbsReal(t->value[part][1][0][source][IMAGE_SHIFT + i]));
+          if (!row) wall = PetscMax(wall, PetscAbsReal(t->value[DIPOLE_COUNT + part][0][source][IMAGE_SHIFT + i]));
         }
     CHECK(most < 1e-9 && wall < 1e-9, "part %d at a wall: divergence %.0e, through the wall %.0e", part, most, wall);
   }
@@ -331,8 +331,8 @@ static PetscErrorCode CheckCurve(void) {
     constant[k] = k % 2 ? 2 : 1;
     strain[k] = k % 2 ? -X[k] : X[k];
   }
-  PetscCall(CurveLayerCreate(LAYER_DOUBLE, 32, 3, X, constant, &curve[0]));
-  PetscCall(CurveLayerCreate(LAYER_DOUBLE, 32, 3, X, strain, &curve[1]));
+  PetscCall(CurveLayerCreate(&stresslet, 32, 3, X, constant, &curve[0]));
+  PetscCall(CurveLayerCreate(&stresslet, 32, 3, X, strain, &curve[1]));
   for (int k = 0; k < 6; k++) {
     const PetscReal r = radius[k];
     PetscReal worst = 0;

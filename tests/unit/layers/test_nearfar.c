@@ -58,7 +58,7 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
       PetscSNPrintf(options, sizeof(options), EXACT PERIODIC "-scheme_type coupled -delta_type %s %s", kernel, scene));
   PetscCall(TestWorldCreate(options, &w));
   const NearField f = w.coupling->mobility->near;
-  const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->far[NEAR_TWO].reach + 2;
+  const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->kernel->reach[NEAR_TWO] + 2;
   const Layout l = w.layout;
   PetscReal *all;
   PetscCall(PetscCalloc1(4 * l->M * l->M, &all));
@@ -67,7 +67,7 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
     for (PetscInt j = 0; j < l->M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
       const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) / h;
-      const int is = r > f->pairs->far[NEAR_TWO].reach ? 1 : 0;
+      const int is = r > f->pairs->kernel->reach[NEAR_TWO] ? 1 : 0;
       if (LayoutBody(l, i) == LayoutBody(l, j) || (is && PetscAbsReal(r - ring) > 0.5)) continue;
       const PetscReal *at = all + 4 * j * l->M + 2 * i, found[4] = {at[0], at[2 * l->M + 1], at[2 * l->M], at[1]};
       BySums(t, f, i, j, d, C);
@@ -106,13 +106,13 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
   for (PetscInt i = 0; i < M && w.layout->n; i++)
     for (PetscInt j = 0; j < M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
-      const int is = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) > f->pairs->far[NEAR_ONE].reach * h ? 1 : 0;
+      const int is = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) > f->pairs->kernel->reach[NEAR_ONE] * h ? 1 : 0;
       const PetscReal *at = all + 4 * j * M + 2 * i, found[4] = {at[0], at[2 * M + 1], at[2 * M], at[1]};
       if (i == j) continue;
       BySums(t, f, i, j, d, C);
       pairs += is;
       for (int c = 0; c < 4; c++) {
-        const PetscReal own = c < 2 ? -0.5 * f->pairs->logarithm[0][PetscAbsInt(i - j)] / (4 * PETSC_PI) : 0;
+        const PetscReal own = c < 2 ? f->pairs->logarithm[0][PetscAbsInt(i - j)] : 0;
         worst[is] = PetscMax(worst[is], PetscAbsReal(f->set.nu * (found[c] - C[c]) - own));
       }
     }
@@ -121,7 +121,7 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 4000,
         "%s, one vesicle, %s: closed form of %d pairs beyond %g h within %.2e/nu, bound %g; nearer ones to %.1e",
-        kernel, place, (int)pairs, f->pairs->far[NEAR_ONE].reach, worst[1], bound, worst[0]);
+        kernel, place, (int)pairs, f->pairs->kernel->reach[NEAR_ONE], worst[1], bound, worst[0]);
   PetscCall(TestWorldDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

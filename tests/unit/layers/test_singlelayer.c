@@ -2,7 +2,7 @@
    kernels, places in a cell and turns of the markers. */
 #include "facts.h"
 #include "layers/latticegreen.h"
-#include "layers/nearimage.h"
+#include "layers/pairkernel.h"
 
 #define OPTIONS                                                                                                        \
   "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "        \
@@ -142,9 +142,14 @@ static PetscErrorCode CheckCircle(const char kernel[], PetscReal turn, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A pair seen from a wall, in cells: x along it, response minus source; a, b the distances of response and source. */
+typedef struct {
+  PetscReal x, a, b;
+} PairOff;
+
 /* The lattice's image by its tables, the half space's less the free one's: response comp r and source comp s (0 along
    the wall, 1 across it), x0 the source's place along it. Of n to t entry q lies at the offset q - 1/2. */
-static PetscReal ImageOfTables(const ImageTable *half, const OffsetTable *free, int r, int s, const ImagePair *p,
+static PetscReal ImageOfTables(const ImageTable *half, const OffsetTable *free, int r, int s, const PairOff *p,
                                PetscReal x0) {
   const Kernel *kernel = KernelFind("cbs54");
   const KernelWeights weights[] = {kernel->along, kernel->across};
@@ -177,24 +182,22 @@ static PetscErrorCode CheckImages(PetscReal R, PetscReal bound) {
   PetscFunctionBeginUser;
   PetscCall(LatticeStokeslet(2 * IMAGE_SHIFT, &free));
   PetscCall(PetscNew(&half));
-  PetscCall(ImageTableFill(&free, half));
-  ImageKernelMake(KernelFind("cbs54"), &kernel);
+  PetscCall(stokeslet.image_fill(&free, half));
+  stokeslet.image_make(KernelFind("cbs54"), &kernel);
   for (int q = 0; q < 60; q++) { /* angles, places between wall and wall, places in a cell */
     const PetscReal turn = 0.9 * (q % 12) / 12, H = R * PetscCosReal(turn), part = (q % 5 + 0.5) / 5;
-    const ImagePair p = {R * PetscSinReal(turn), 3 + part * (H - 6), H - 3 - part * (H - 6)};
-    PetscReal left[IMAGE_PARTS];
-    Lanes blake[IMAGE_PARTS];
-    NearImageBlake(p.x + (Lanes){0}, p.a + (Lanes){0}, p.b + (Lanes){0}, blake);
-    ImageFar(&p, &kernel, kernel.moment[1].second, kernel.moment[1].second, left);
+    const PairOff p = {R * PetscSinReal(turn), 3 + part * (H - 6), H - 3 - part * (H - 6)};
+    const Lanes x = p.x + (Lanes){0}, a = p.a + (Lanes){0}, b = p.b + (Lanes){0};
+    Lanes blake[IMAGE_PARTS], left[IMAGE_PARTS], other[IMAGE_PARTS];
+    stokeslet.image_exact(&kernel, x, a, b, blake);
+    stokeslet.image_far(&kernel, x, a, b, NULL, left);
     for (int k = 0; k < IMAGE_NT + 1; k++) {
       const int r = k != IMAGE_TT, s = k == IMAGE_NN;
       const PetscReal image = ImageOfTables(half, &free, r, s, &p, 0.37 * q);
-      most[k] = PetscMax(most[k], PetscAbsReal(blake[k][0] - image - left[k]));
+      most[k] = PetscMax(most[k], PetscAbsReal(blake[k][0] - image - left[k][0]));
     }
-    const ImagePair turned = {-p.x, p.b, p.a}; /* t from n is n from t, exchanged */
-    PetscReal other[IMAGE_PARTS];
-    ImageFar(&turned, &kernel, kernel.moment[1].second, kernel.moment[1].second, other);
-    most[IMAGE_TN] = PetscMax(most[IMAGE_TN], PetscAbsReal(left[IMAGE_TN] - other[IMAGE_NT]));
+    stokeslet.image_far(&kernel, -x, b, a, NULL, other); /* t from n is n from t, exchanged */
+    most[IMAGE_TN] = PetscMax(most[IMAGE_TN], PetscAbsReal(left[IMAGE_TN][0] - other[IMAGE_NT][0]));
   }
   for (int k = 0; k < IMAGE_TN; k++)
     CHECK(most[k] < bound, "%s of images %g cells away: closed form and sums are apart by %.1e", name[k], (double)R,

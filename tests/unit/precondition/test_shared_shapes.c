@@ -2,7 +2,7 @@
    curve, and a vesicle's problem solved by another's shape. */
 #include "numerics/packedmatrix.h"
 #include "precondition/sharedshapes.h"
-#include "layers/singlepairs.h"
+#include "layers/layerpairs.h"
 #include "facts.h"
 #include "bodies/bending.h"
 
@@ -104,7 +104,8 @@ static PetscErrorCode CheckSelfLayer(PetscInt n) {
                     (int)n));
   PetscCall(TestWorldCreate(options, &t));
   PetscCall(PetscMalloc3(4 * n * n, &S, 2 * n, &F, 2 * n, &U));
-  PetscCall(SelfLayer(&t.coupling->mobility->near->set, t.membrane->spectral[0], n, t.coupling->markers->X, S));
+  PetscCall(LayerSelf(&stokeslet, &t.coupling->mobility->near->set, t.membrane->spectral[0], n, t.coupling->markers->X,
+                      NULL, S));
   for (PetscInt i = 0; i < 2 * n; i++) {
     F[i] = sin(1.0 + 0.3 * (double)i);
     U[i] = 0;
@@ -132,7 +133,7 @@ static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], 
   MembraneLaw law;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(4 * N * N, &S));
-  PetscCall(SelfLayer(&t->coupling->mobility->near->set, m->spectral[v], N, X, S));
+  PetscCall(LayerSelf(&stokeslet, &t->coupling->mobility->near->set, m->spectral[v], N, X, NULL, S));
   PetscCall(LawCreate(m, t->fluid->grid->h, v, v + 1, &law));
   LawPlace(law, X);
   LawForce(law, 1, sigma, F);
