@@ -64,10 +64,9 @@ PETSC_EXTERN PetscErrorCode LawTargetAreas(MembraneLaw law, PetscReal a0, Vec Xs
    for a product with the operator. Nothing without an area target. */
 PETSC_EXTERN void LawReplaceAreas(MembraneLaw law, PetscBool aimed, const PetscScalar V[], PetscScalar y[]);
 
-/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest, which is
-   collective
-   - of a law of the own vesicles, the largest residual of the rows for V, times h^2/ds: a surface divergence (1/time).
- */
+/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - of a law of the
+   own vesicles, the largest residual of the rows for V, times h^2/ds: a surface divergence (1/time). LawLargest is
+   collective. */
 PETSC_EXTERN void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]);
 PETSC_EXTERN PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec g, PetscReal *largest);
 
