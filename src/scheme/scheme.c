@@ -107,7 +107,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscCall(s->ops.step(s, most));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
   if (!*s->report.failure) {
-    s->state.t = StepTime(&s->policy, s->state.t, s->state.dt);
+    s->state.t += s->state.dt;
     s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;
     PetscCall(SchemeCheck(s));

@@ -1,5 +1,4 @@
 #include "scheme/stepcontrol.h"
-#include <stdlib.h>
 
 #define FIRST_LEVEL (-10) /* the first step is base/32 */
 #define LEAST_LEVEL (-80)
@@ -13,7 +12,6 @@
 StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
   return (StepPolicy){.adaptive = scene->time.adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,
                       .base = scene->time.dt,
-                      .every = scene->output.every,
                       .tolerance = scene->time.adapt_tol,
                       .max_move = scene->time.adapt_max_move * FluidSpecCellSize(&scene->fluid),
                       .max_step = scene->time.adapt_max_step};
@@ -31,18 +29,6 @@ static PetscReal Rounding(const StepPolicy *p, PetscReal until) {
 
 PetscBool StepFinished(const StepPolicy *p, PetscReal t, PetscReal until) {
   return t >= until - Rounding(p, until) ? PETSC_TRUE : PETSC_FALSE;
-}
-
-PetscReal StepTime(const StepPolicy *p, PetscReal t, PetscReal dt) {
-  const PetscReal sum = t + dt, unit[2] = {p->adaptive ? 0 : p->base, p->every};
-  for (int k = 0; k < 2; k++) {
-    const PetscReal whole = unit[k] > 0 ? unit[k] * rint(sum / unit[k]) : PETSC_MAX_REAL;
-    char text[32];
-    if (PetscAbsReal(sum - whole) > 1e-9 * dt) continue;
-    (void)snprintf(text, sizeof(text), "%.15g", (double)whole);
-    return strtod(text, NULL);
-  }
-  return sum;
 }
 
 PetscReal StepFixed(const StepPolicy *p, PetscReal t, PetscReal most) {

@@ -6,7 +6,6 @@
 typedef struct {
   PetscBool adaptive;
   PetscReal base;      /* -time_step: the fixed step, or what powers of sqrt(2) multiply (time) */
-  PetscReal every;     /* -output_every (time) */
   PetscReal tolerance; /* largest accepted error estimate, in units of R0 */
   PetscReal max_move;  /* length that a marker may move in a step relative to its vesicle's mean velocity; 0 no limit */
   PetscReal max_step;  /* no step is larger; 0 no limit (time) */
@@ -43,10 +42,6 @@ PETSC_EXTERN PetscInt StepFirstLevel(void);
 
 /* StepFinished - whether the time t is `until`, up to the rounding of a sum of steps. */
 PETSC_EXTERN PetscBool StepFinished(const StepPolicy *policy, PetscReal t, PetscReal until);
-
-/* StepTime - the time after a step dt from t: t + dt, and the number of 15 digits where that is a multiple of the fixed
-   step or of -output_every up to rounding: 3, not 2.9999999999999996. */
-PETSC_EXTERN PetscReal StepTime(const StepPolicy *policy, PetscReal t, PetscReal dt);
 
 /* StepFixed - the next step of a fixed policy at time t with the time `most` left: the base, except that the last one
    or two steps are shortened to end exactly. A function of its arguments alone, so that a restart takes the same steps.
