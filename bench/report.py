@@ -9,7 +9,7 @@ import numpy as np
 
 import model
 from petves.views.plot import new_figure, save_figure
-from petves.tables import write_csv
+from studies.common.tables import write_csv
 
 Kept = dict[str, list[dict]]
 

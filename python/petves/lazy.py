@@ -14,17 +14,7 @@ from petves.runfiles import read_h5
 
 
 class FileArray(BackendArray):
-    """The first rows of a dataset of an HDF5 file; rows that a run under way has not written yet are NaN.
-
-    Parameters
-    ----------
-    path : Path
-        The file. It is open only while it is read.
-    name : str
-        The dataset.
-    rows : int
-        How many rows, along the first axis.
-    """
+    """The first rows of a dataset of an HDF5 file, open only while it is read; rows that are not written yet are NaN."""
 
     def __init__(self, path: Path, name: str, rows: int) -> None:
         self.path, self.name = path, name
@@ -52,5 +42,5 @@ class FileArray(BackendArray):
 
 
 def lazy_array(path: Path, name: str, rows: int) -> indexing.LazilyIndexedArray:
-    """Return the first rows of a dataset as xarray takes them; the parameters are those of `FileArray`."""
+    """Return the first rows of a dataset as xarray takes them, read when they are used."""
     return indexing.LazilyIndexedArray(FileArray(path, name, rows))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from petves.run import Run
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from studies.common.curves import at, edge_lengths
 from studies.common.engine import Results, Series
 from studies.common.paper import CONVERGENCE, TABLE_3, TABLE_7

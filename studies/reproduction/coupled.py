@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Results
 from studies.reproduction import coupled_runs as study

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Callable
 
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Case, NotRun, Results
 from studies.common.paper import ITERATIONS

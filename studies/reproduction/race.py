@@ -9,7 +9,7 @@ from typing import Callable, Iterator
 
 import numpy as np
 
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from studies.common.curves import edge_lengths, last_markers, material_distance, radius
 from studies.common.engine import Case, Results, Series
 from studies.common.paper import REST, shear_errors

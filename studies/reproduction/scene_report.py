@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.tables import table
+from studies.common.tables import table
 from studies.common.engine import Results
 from studies.common.paper import REST, SHEAR, SHEAR_FREE
 from studies.reproduction import scene_figures, scenes

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from petves.run import Run
-from petves.tables import write_csv
+from studies.common.tables import write_csv
 from studies.common import paper
 from studies.common.curves import radius
 from studies.common.engine import Case, Results, Series

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from petves.run import RunError
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from studies.common.curves import edge_lengths, last_markers, material_distance
 from studies.common.engine import Case, Results, Series
 from studies.common.scenes import (

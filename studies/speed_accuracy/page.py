@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from studies.common.engine import Case, Results
 from studies.common.scenes import option_text
 from studies.speed_accuracy import bodies

@@ -11,7 +11,7 @@ from statistics import median
 import numpy as np
 
 from petves.program import OPEN_MPI
-from petves.tables import table
+from studies.common.tables import table
 from studies.common.engine import Case, Results, Series, cpu_seconds
 from studies.common.paper import SHEAR, SHEAR_FREE
 from studies.common.scenes import LAST_ONLY, option_file, tank_treading, words

@@ -12,7 +12,7 @@ import numpy as np
 
 from petves.program import launch
 from petves.run import Run
-from petves.tables import write_csv
+from studies.common.tables import write_csv
 from studies.common.curves import material_distance
 from studies.common.engine import Case, Results, Series
 from studies.common.scenes import words

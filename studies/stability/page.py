@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.tables import csv_text, table, write_csv
+from studies.common.tables import csv_text, table, write_csv
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Kept
 from studies.stability import bodies

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.tables import table, write_csv
+from studies.common.tables import table, write_csv
 from studies.common.engine import Results
 from studies.stability.cells import run_cell
 from studies.stability.maps import MAPS

@@ -154,13 +154,13 @@ def test_what_was_written_counts_vesicles_h5(whole):
     assert written["bytes"] == sum(path.stat().st_size for path in whole.iterdir() if path.name not in others)
 
 
-def test_many_are_drawn_in_colours_without_names(whole, tmp_path):
-    """One polygon an image, each vesicle of the colour that it keeps, no legend."""
+def test_many_are_drawn_in_the_colour_of_their_kind(whole, tmp_path):
+    """One polygon an image, all of the one kind in one colour; tests/python/test_views.py has two kinds."""
     run = Files.read(whole)
     _, (axes,) = new_figure(4, 3)
     drawn = draw_members(axes, run, -1)
     assert len(drawn.get_paths()) == sum(len(run.images(-1, v)) for v in range(42)) >= 42
-    assert len(np.unique(drawn.get_facecolors(), axis=0)) == 20 and axes.get_legend() is None
+    assert len(np.unique(drawn.get_facecolors(), axis=0)) == 1 and axes.get_legend() is None
     assert scene_in_words(run)[1].startswith("42 vesicles") and "markers each" in scene_in_words(run)[1]
     assert report(whole, tmp_path / "page.html").stat().st_size > 1e5
 

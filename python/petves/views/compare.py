@@ -8,7 +8,6 @@ import numpy as np
 
 from petves.files import shown
 from petves.run import Run
-from petves.tables import table
 from petves.views.plot import draw_outlines, dress, new_figure, save_figure
 
 COUNTERS = ("step", "wall", "nsolve", "tension_its", "bending_its", "coupled_its")
@@ -43,13 +42,18 @@ def compare(first: str | Path, second: str | Path, output: str | Path | None = N
     return lines, _draw(runs, Path(output) if output else runs[0].folder / "compare.png")
 
 
+def _table(header: list[str], rows: list[list[str]]) -> list[str]:
+    """Return the lines of a Markdown table, and an empty one."""
+    return ["| " + " | ".join(line) + " |" for line in (header, ["---"] * len(header), *rows)] + [""]
+
+
 def _options(a: Run, b: Run) -> list[str]:
     one, two = a.options(), b.options()
     names = [name for name in {**one, **two} if name != "output_dir" and one.get(name) != two.get(name)]
     if not names:
         return ["The options are the same.", ""]
     rows = [["-" + name, one.get(name, "not given"), two.get(name, "not given")] for name in names]
-    return table(["option", shown(a.folder), shown(b.folder)], rows)
+    return _table(["option", shown(a.folder), shown(b.folder)], rows)
 
 
 def _columns(a: Run, b: Run) -> list[str]:
@@ -63,7 +67,7 @@ def _columns(a: Run, b: Run) -> list[str]:
         gap = np.abs(own - other)
         largest = f"{np.nanmax(gap):.3e}" if np.isfinite(gap).any() else "none"
         rows.append([name, f"{own[-1]:.8g}", f"{other[-1]:.8g}", largest])
-    return table(["column", f"first at t = {end:g}", "second", "largest difference"], rows)
+    return _table(["column", f"first at t = {end:g}", "second", "largest difference"], rows)
 
 
 def _markers(a: Run, b: Run) -> str:

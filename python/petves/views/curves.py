@@ -96,8 +96,9 @@ def plot_walls(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "walls
     found = wall_shear_stress(load(run.folder, "xarray").isel(time=frame))
     if not found:
         raise RunError(f"{run.folder}: the box has no wall")
-    figure, axes = new_figure(6, 1.0 + 1.7 * len(run.walls), rows=len(run.walls), look=look)
-    for panel, along in zip(axes, reversed(run.walls.translate({120: "y", 121: "x"}))):
+    directions = [along for along in "xy" if any(along in stress.dims for stress in found.values())]
+    figure, axes = new_figure(6, 1.0 + 1.7 * len(directions), rows=len(directions), look=look)
+    for panel, along in zip(axes, directions):
         for side, stress in found.items():
             if along in stress.dims:
                 panel.plot(stress[along], stress, "--" if side in ("top", "right") else "-", label=side)

@@ -141,7 +141,7 @@ def add_bar(place: Axes, mappable: ScalarMappable, label: str) -> None:
     from matplotlib.ticker import MaxNLocator
 
     inches = place.get_window_extent().width / place.figure.dpi
-    ticks = MaxNLocator(max(2, int(inches / TICK)), min_n_ticks=2)
+    ticks = MaxNLocator(max(2, int(inches / TICK)), steps=[1, 2, 2.5, 5, 10], min_n_ticks=2)
     place.figure.colorbar(mappable, cax=place, label=label, ticks=ticks, orientation="horizontal")
 
 
