@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from petves.run import Run, centroid
+from petves.run import Run, RunError, centroid
 
 
 def stresslets(run: Run, frame: int) -> np.ndarray:
@@ -63,9 +63,14 @@ def centers(run: Run) -> np.ndarray:
 def mean_square_displacement(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Return the lags (time) and the mean square displacement of centres of `run` along x and y (length^2), shape (T, 2).
 
-    Means over the vesicles and over all pairs of saved times with that lag; saved times are taken to be evenly spaced. In
+    Means over the vesicles and over all pairs of saved times with that lag; saved times must be evenly spaced. In
     a sheared channel x is mostly the flow's, y is what collisions do.
     """
+    steps = np.diff(run.time)
+    if len(steps) and np.ptp(steps) > 1e-3 * steps.max():
+        raise RunError(
+            f"{run.folder}: saved times are not even, {steps.min():g} to {steps.max():g} apart; allowed: even ones"
+        )
     places = centers(run)
     lags = [np.mean((places[lag:] - places[: len(places) - lag]) ** 2, axis=(0, 1)) for lag in range(len(places))]
     return run.time - run.time[0], np.array(lags)

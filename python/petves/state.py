@@ -85,7 +85,8 @@ class State(Measures):
 
     @property
     def tension(self) -> np.ndarray:
-        """Tension (length^3/time^2), shape (M,), entry k on the edge from marker k-1 to marker k; a view."""
+        """Tension (length^3/time^2), shape (M,), entry k at marker k; a view. With another ``membrane_derivative`` than
+        spectral, the default, it is on the edge from marker k-1 to marker k."""
         return self._gathered["tension"]
 
     @property

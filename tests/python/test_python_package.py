@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 import pytest
-from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, without_mpirun
+from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, run_petves, without_mpirun
 
 EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
 LEFT = {"quick_start": "quick_start/shapes.png", "restart": "halves/series.csv"}
@@ -182,6 +182,17 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
                 wrong += [f"{name}.{label}: {p}" for p in names if not re.search(rf"\b{p}\b", text)]
                 count += len(names)
         assert count > 60 and not wrong
+
+    def test_reading_and_drawing_need_no_petsc(tmp_path):
+        run = run_petves(tmp_path / "run", "-domain_cells 24,24 -vesicle_semi_axes 0.4,0.5 -time_end 0.01")
+        code = (
+            "import sys\nsys.modules['petsc4py'] = None\nimport petves\n"
+            f"print(len(petves.load({str(run.folder)!r})['time']), len(petves.plot({str(run.folder)!r})))\n"
+            "try:\n    petves.Simulation()\nexcept petves.Error as error:\n    print(error)\n"
+        )
+        done = python(["-c", code], PYTHONPATH=str(ROOT / "python"))
+        first, last = done.stdout.splitlines()
+        assert first == "2 6" and last.startswith("petsc4py is not installed, which simulating needs; "), done.stderr
 
     def test_missing_library_is_one_line():
         done = python(

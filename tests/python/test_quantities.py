@@ -9,6 +9,7 @@ from harness import run_petves
 
 import petves
 from petves.quantities import line, probe, stream_function, total_pressure, vorticity, wall_shear_stress
+from petves.rheology import mean_square_displacement
 
 xarray = pytest.importorskip("xarray")
 pytestmark = pytest.mark.xdist_group("quantities")  # its tests share runs
@@ -102,3 +103,14 @@ def test_rows_that_are_not_there_yet_are_nan(tmp_path):
     np.testing.assert_array_equal(values[4].values, [np.nan] * 2)
     np.testing.assert_array_equal(values[::-2, 1].values, [np.nan, 5, 1])
     assert FileArray(tmp_path / "some.h5", "x", 5).shape == (5, 2)
+
+
+def test_displacements_need_even_times(cached_run):
+    """Their lags are differences of saved times."""
+    run = petves.load(
+        cached_run("-domain_cells 24,24 -time_step 0.01 -time_end 0.03 -output_every 0.01").folder, "numpy"
+    )
+    assert len(mean_square_displacement(run)[0]) == 4
+    run.time[2] += 0.002
+    with pytest.raises(petves.Error, match="saved times are not even, 0.008 to 0.012 apart"):
+        mean_square_displacement(run)
