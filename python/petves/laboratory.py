@@ -58,12 +58,8 @@ def numbers(
         raise Error(f"flow {flow}: unknown; allowed: shear, extension")
     nu, c_b, area = viscosity / density, bending / density, reduced_area * math.pi * radius**2
     relaxation, ratio = viscosity * radius**3 / bending, given["inside"] / viscosity
-    found = {
-        "V": reduced_area,
-        "lambda_t": relaxation,
-        "chi": abs(rate) * relaxation,
-        "Re": abs(rate) * radius**2 / nu,
-    }
+    chi, reynolds = abs(rate) * relaxation, abs(rate) * radius**2 / nu
+    found = {"V": reduced_area, "lambda_t": relaxation, "chi": chi, "Re": reynolds, "viscosity_ratio": ratio}
     turn = 1 / abs(rate) if rate else relaxation
     values = {
         "domain_box": ",".join(f"{side * 4 * radius:.9g}" for side in (-1, 1, -1, 1)),
@@ -82,7 +78,7 @@ def numbers(
         "output_every": 0.25 * turn,
     }
     options = {name: value if isinstance(value, str) else f"{value:.9g}" for name, value in values.items()}
-    return options, found | {"viscosity_ratio": ratio}
+    return options, found
 
 
 def lines(**given: object) -> list[str]:

@@ -88,8 +88,9 @@ def wall_shear_stress(data: xarray.Dataset) -> xarray.Dataset:
     import xarray
 
     sides = {}
-    for side in walls_of(data.attrs["walls"]):
-        name, axis, step = SIDES[side]
+    for side, (name, axis, step) in SIDES.items():
+        if "yx"[axis + 2] not in data.attrs["walls"]:
+            continue
         make = lambda one: wall_shear_of(one[name].values, data.attrs["h"], data.attrs["nu"], axis, step)
         sides[side] = _array(data, "wall_shear_stress", make, ("x" if axis == -2 else "y",))
     return xarray.Dataset(sides)
@@ -145,11 +146,6 @@ def line(data: xarray.Dataset, begin: ArrayLike, end: ArrayLike, count: int = 20
     points = np.linspace(begin, end, count)
     distance = np.linalg.norm(points - points[0], axis=1)
     return probe(data, points).assign_coords(distance=("point", distance, {"units": "length"}))
-
-
-def walls_of(directions: str) -> list[str]:
-    """Return the sides of the box that are walls, where walls bound the directions "x", "y" or "xy"."""
-    return [side for side, (_, axis, _) in SIDES.items() if "yx"[axis + 2] in directions]
 
 
 def _array(

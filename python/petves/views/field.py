@@ -124,12 +124,8 @@ def kinds_of(run: Run) -> tuple[np.ndarray, list[str]]:
     Vesicles of a kind have one area, reduced area, bending stiffness and viscosity ratio, to a hundredth.
     """
     area, length = (run.each(name)[0] for name in ("area", "length"))
-    names = {
-        "$A$": area,
-        "$V$": 4 * np.pi * area / length**2,
-        "$c_b$": run.bending,
-        r"$\lambda$": run.viscosity_ratio,
-    }
+    reduced = 4 * np.pi * area / length**2
+    names = {"$A$": area, "$V$": reduced, "$c_b$": run.bending, r"$\lambda$": run.viscosity_ratio}
     table = np.array([[f"{value:.2g}" for value in values] for values in names.values()])
     kinds, members = np.unique(table, axis=1, return_inverse=True)
     if kinds.shape[1] > KINDS or kinds.shape[1] == 1:
