@@ -115,8 +115,8 @@ static void AddJumpsAt(CoarseCorrection s, const PetscReal x[2], PetscInt first,
     sum[0] += LanesWhere(so, D[0] * jx + D[2] * jy);
     sum[1] += LanesWhere(so, D[2] * jx + D[1] * jy);
   }
-  u[0] -= LanesSum(sum[0]) / PETSC_PI;
-  u[1] -= LanesSum(sum[1]) / PETSC_PI;
+  u[0] += LanesSum(sum[0]);
+  u[1] += LanesSum(sum[1]);
 }
 
 /* U += D J of the vesicle `column` at own markers of `row`; sign times shift moves the column. */
