@@ -70,7 +70,7 @@ def test_dilute_limit(tmp_path):
 
 def test_profiles(tmp_path):
     """Areas add up, the fluid at the walls goes with them, nothing has moved at lag 0."""
-    run = Run.read(run_petves(tmp_path / "run", CHANNEL + APART).folder)
+    run = Run.read(run_petves(tmp_path / "run", CHANNEL + APART + "-time_end 0.08 -output_every 0.04").folder)
     y, part = rheology.area_fraction_profile(run, -1, 16)
     assert abs(part.mean() * 16 - run.series["area"][-1]) < 0.03 and part[0] == part[-1] == 0 and part.max() < 1
     assert abs(y[0] - 0.125) < 1e-12
