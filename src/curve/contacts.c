@@ -98,6 +98,32 @@ static PetscBool ContactNear(void *context, PetscInt i, PetscInt j, const PetscR
   return s->error ? PETSC_TRUE : PETSC_FALSE;
 }
 
+#define FEW_CURVES 32 /* in most scenes with more curves their rectangles overlap */
+
+/* Whether the rectangles around closed curves show that each curve that moves is farther than reach from all others,
+   and from its own images or every image of its points more than half a period from the point. */
+static PetscBool CurvesAreApart(const CurveSet *set, PetscReal reach) {
+  PetscReal box[FEW_CURVES][4];
+  if (set->curves > FEW_CURVES) return PETSC_FALSE;
+  for (PetscInt v = 0; v < set->curves; v++) {
+    if (CurveSetKind(set, v).type == CURVE_SPANNING) return PETSC_FALSE;
+    (void)PetscMemcpy(box[v], (PetscReal[4])CURVE_NOWHERE, sizeof(box[v]));
+    CurveBounds(set->start[v + 1] - set->start[v], set->X + 2 * set->start[v], box[v]);
+    for (PetscInt w = 0; w <= v && w < set->moving; w++) {
+      PetscBool apart = w == v ? PETSC_TRUE : PETSC_FALSE;
+      for (int d = 0; d < 2; d++) {
+        const PetscReal *a = box[v] + 2 * d, *b = box[w] + 2 * d, period = set->period[d], extent = a[1] - a[0];
+        const PetscReal middle = 0.5 * (b[0] + b[1] - a[0] - a[1]),
+                        images = period > 0 ? period * rint(middle / period) : 0;
+        if (w < v && PetscAbsReal(middle - images) - 0.5 * (extent + b[1] - b[0]) > reach) apart = PETSC_TRUE;
+        if (w == v && period > 0 && extent + reach >= period && 2 * extent >= period) apart = PETSC_FALSE;
+      }
+      if (!apart) return PETSC_FALSE;
+    }
+  }
+  return PETSC_TRUE;
+}
+
 PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts) {
   const PetscInt points = set->start[set->curves], *part = set->part;
   const PetscInt first[2] = {part ? set->start[part[0]] : 0, part ? set->start[part[1]] : points};
@@ -106,6 +132,8 @@ PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, 
   ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
   PetscFunctionBeginUser;
   *n = 0;
+  *contacts = NULL;
+  if (CurvesAreApart(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int d = 0; d < 2; d++)
     if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
   PetscCall(PetscMalloc1(points, &s.curve));
