@@ -21,7 +21,7 @@ STREAMS = 1.1  # density of streamlines
 OVER_FIELD, OVER_STREAMS = 1.2, 1.5  # matplotlib's order: streamlines, solids; membranes at its 2
 SOLID = "#9a9a9a"  # colour of obstacles
 CROWD = 200  # vesicles from which outlines are thin
-KINDS = 10  # of vesicles that have a colour each
+KINDS = 4  # of vesicles, up to which each has a colour
 
 
 @dataclass

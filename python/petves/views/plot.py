@@ -286,7 +286,7 @@ def _plot_first_and_last(run: Run, look: Look) -> Path:
     if sheet.last is not None:
         sheet.last.set_axis_off()
         patches = [sheet.last.fill(np.nan, np.nan, f"C{k}", ec="black", label=kind)[0] for k, kind in enumerate(kinds)]
-        columns = max(1, int(sheet.figure.get_figwidth() / 1.7))
+        columns = max(1, int(sheet.figure.get_figwidth() / 2.6))
         sheet.last.legend(handles=patches, loc="center", ncols=columns, frameon=False, fontsize=LEGEND)
     for panel, frame in zip(sheet.panels, (0, -1)):
         draw_members(panel, run, frame, look.follow)
