@@ -184,7 +184,8 @@ class Simulation(State):
             self._lib.PetvesEnter(self._options, self._message, ctypes.byref(depth))
             if self._quiet:
                 self._lib.PetvesSetQuiet(1)
-            self._inside = True
+            own = self.__dict__  # in each step: without the check of __setattr__
+            own["_inside"] = True
             try:
                 for function, arguments in calls:
                     code = getattr(self._lib, function)(*arguments)
@@ -193,7 +194,7 @@ class Simulation(State):
             except SystemError as error:  # an exception in a Python callback of petsc4py, a KSP monitor for instance
                 cause = error.__cause__ or error
             finally:
-                self._inside = False
+                own["_inside"] = False
                 if self._quiet:
                     self._lib.PetvesSetQuiet(0)
                 self._lib.PetvesLeave(depth)
@@ -303,7 +304,7 @@ class Simulation(State):
                     self._lib.SimulationGetReason(self._handle, ctypes.byref(word))
                     reason = word.value.decode()
                     break
-                self._ended = False
+                self.__dict__["_ended"] = False
                 self._stop_on(failure)
                 self._keep()
                 bar(self.time)
