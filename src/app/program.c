@@ -170,7 +170,8 @@ static int RunOrUsage(int argc, char **argv) {
 }
 
 int PetvesMain(int argc, char **argv) {
-  static const char *const tools[] = {"plot", "movie", "report", "compare", "sweep", NULL};
+  static const char *const tools[] = {"plot",  "movie",   "watch",  "report", "compare",
+                                      "sweep", "numbers", "scenes", NULL};
   static char options_file[] = "-options_file";
   int status;
   if (argc > 1 && IsOneOf(argv[1], tools)) return StartTool(argc, argv);

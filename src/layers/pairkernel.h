@@ -9,8 +9,9 @@
 
        r_j/(2 pi r^2),      [2 (r.N) r_j/r^4 - N_j/r^2]/pi.
 
-   A pair has a matrix K of velocities: xx, yy, xy (x to a source along y), yx. A new kernel is one file with one
-   PairKernel: stokeslet.c, stresslet.c. Nothing here crosses ranks. */
+   A pair has a matrix K of velocities: xx, yy, xy (x to a source along y), yx. A kernel is one file with one
+   PairKernel: stokeslet.c, stresslet.c. What sources that are no forces need besides, a normal, lies where `force` is
+   asked for. Nothing here crosses ranks. */
 #pragma once
 #include "layers/imagetable.h"
 #include "layers/layersetting.h"
