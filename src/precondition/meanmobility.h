@@ -24,7 +24,7 @@ struct _p_MeanMobility {
   MobilityTable table;    /* NULL with box, and in unbounded fluid, where the near field is all */
   BoxPart box;            /* W; NULL with table */
   PetscReal near;         /* cells up to which a pair's stencils are summed */
-  PetscReal part;         /* part of the grid's velocity that markers have, CouplingGridPart */
+  PetscReal part;         /* part of the grid's velocity that markers have, MobilityGridPart */
   PaddedStencil *stencil; /* [2M] work */
 };
 
