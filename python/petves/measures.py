@@ -55,7 +55,8 @@ def _column(name: str, what: str) -> property:
 class Measures:
     """Measures after the last step; with several vesicles totals, worst values or means, and `each` for one by one."""
 
-    _rows: list[tuple[float, ...]]
+    _row: ctypes.Array[ctypes.c_double]  # the last
+    _rows: list[bytes]
     _columns: dict[str, int]
 
     def measure(self, name: str) -> float:
@@ -66,7 +67,7 @@ class Measures:
         Error
             When there is no column of this name: the line names all that there are.
         """
-        return self._rows[-1][self._place(name)]
+        return self._row[self._place(name)]
 
     def _place(self, name: str) -> int:
         if name not in self._columns:
@@ -88,7 +89,7 @@ class Measures:
     @property
     def history(self) -> dict[str, np.ndarray]:
         """Columns of series.csv of this simulation's steps, step 0 first; an empty entry is NaN."""
-        table = np.array(self._rows)
+        table = np.frombuffer(b"".join(self._rows)).reshape(len(self._rows), -1).copy()
         return {name: table[:, k] for name, k in self._columns.items()}
 
     @property

@@ -88,7 +88,7 @@ class Simulation(State):
         self._ended = True  # nothing to write yet
         self._temporary = False
         self._failed: list[BaseException] = []  # by the flow
-        self._rows: list[tuple[float, ...]] = []
+        self._rows: list[bytes] = []
         self._gathered: dict[str, np.ndarray] = {}
         self._comm = comm or PETSc.COMM_WORLD
         self._communicator = communicator(self._comm)
@@ -233,7 +233,7 @@ class Simulation(State):
                 array.flags.writeable = False
                 self._gathered[name] = array
         self._lib.SimulationGetRow(self._handle, -1, self._row)
-        self._rows.append(tuple(self._row))
+        self._rows.append(bytes(self._row))  # cheaper than a tuple
 
     # -- stepping ------------------------------------------------------------------------------------------------------
 
