@@ -30,29 +30,6 @@ static PetscErrorCode Apply(PC pc, Vec r, Vec z) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A z for the first z = P b/|b| of a solve, from the whole residual at x + |b| z: where the preconditioner is good that
-   is a solution already, and a Stokes solve has given the velocity that goes with it. */
-static PetscErrorCode Try(CoupledSolver s, Vec z, Vec Az) {
-  Trial *t = &s->trial;
-  PetscFunctionBeginUser;
-  t->state = TRIAL_MADE;
-  PetscCall(VecAXPBY(s->pending, t->scale, 0, z));
-  PetscCall(VecWAXPY(t->x, 1, s->pending, s->x));
-  PetscCall(ReducedAdd(s->reduced, s->pending, t->x, t->b));
-  PetscCall(VecNorm(t->b, NORM_2, &t->residual));
-  PetscCall(VecWAXPY(Az, -1, t->b, s->b));
-  PetscCall(VecScale(Az, 1 / t->scale));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CoupledSolverMult(Mat A, Vec x, Vec y) {
-  CoupledSolver s;
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(A, &s));
-  PetscCall(s->trial.state == TRIAL_WANTED ? Try(s, x, y) : MatMult(s->reduced->A, x, y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The KSP, then the preconditioner for it. */
 static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
   PetscBool flexible;
@@ -64,7 +41,7 @@ static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
   PetscCall(KSPGMRESSetRestart(s->ksp, 60));
   PetscCall(KSPGMRESSetCGSRefinementType(s->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
   PetscCall(KSPSetTolerances(s->ksp, scene->coupling.ksp_rtol, 0, PETSC_DEFAULT, 200));
-  PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
+  PetscCall(KSPSetOperators(s->ksp, s->reduced->A, s->reduced->A));
   PetscCall(KSPGetPC(s->ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetApply(pc, Apply));
@@ -83,7 +60,6 @@ static PetscErrorCode CreateKSP(CoupledSolver s, Scene scene) {
 
 PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver *out) {
   CoupledSolver s;
-  PetscInt n, N;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
@@ -91,12 +67,8 @@ PetscErrorCode CoupledSolverCreate(Scene scene, Coupling coupling, CoupledSolver
   PetscCall(UnknownsCreate(coupling, &s->unknowns));
   PetscCall(ReducedCreate(s->unknowns, &s->reduced));
   PetscCall(UnknownsCreateVec(s->unknowns, &s->x));
-  Vec *others[] = {&s->b, &s->change, &s->pending, &s->trial.x, &s->trial.b};
-  for (int k = 0; k < 5; k++) PetscCall(VecDuplicate(s->x, others[k]));
-  PetscCall(VecGetLocalSize(s->x, &n));
-  PetscCall(VecGetSize(s->x, &N));
-  PetscCall(MatCreateShell(coupling->fluid->grid->comm, n, n, N, N, s, &s->A));
-  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))CoupledSolverMult));
+  PetscCall(VecDuplicate(s->x, &s->b));
+  PetscCall(VecDuplicate(s->x, &s->change));
   PetscCall(CreateKSP(s, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,9 +78,9 @@ PetscErrorCode CoupledSolverDestroy(CoupledSolver *solver) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPDestroy(&s->ksp));
-  Vec *all[] = {&s->x, &s->b, &s->change, &s->pending, &s->trial.x, &s->trial.b};
-  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
-  PetscCall(MatDestroy(&s->A));
+  PetscCall(VecDestroy(&s->x));
+  PetscCall(VecDestroy(&s->b));
+  PetscCall(VecDestroy(&s->change));
   PetscCall(PreconditionerDestroy(&s->preconditioner));
   PetscCall(ReducedDestroy(&s->reduced));
   PetscCall(UnknownsDestroy(&s->unknowns));
@@ -168,71 +140,64 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x + the change of a KSPSolve; b becomes the residual that is left. */
-static PetscErrorCode Follow(CoupledSolver s, SolveReport *report) {
-  PetscFunctionBeginUser;
-  PetscCall(VecAXPY(s->x, 1, s->change));
-  PetscCall(VecAYPX(s->pending, s->trial.state == TRIAL_MADE ? -1 : 1, s->change));
-  PetscCall(ReducedAdd(s->reduced, s->pending, s->x, s->b));
-  PetscCall(VecSet(s->pending, 0));
-  PetscCall(VecNorm(s->b, NORM_2, &report->residual));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* One KSPSolve for the residual b, whose change is added to x, or what it has tried where that is enough. */
-static PetscErrorCode Correct(CoupledSolver s, PetscReal goal, SolveReport *report) {
-  Trial *t = &s->trial;
-  PetscInt its;
-  PetscFunctionBeginUser;
-  PetscCall(KSPSolve(s->ksp, s->b, s->change));
-  PetscCall(KSPGetIterationNumber(s->ksp, &its));
-  PetscCall(KSPGetConvergedReason(s->ksp, &report->why));
-  PetscCall(KSPGetResidualNorm(s->ksp, &report->residual));
-  report->its += its;
-  if (report->why < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (t->state == TRIAL_MADE && t->residual <= goal) {
-    PetscCall(VecCopy(t->x, s->x));
-    PetscCall(VecSet(s->pending, 0));
-    report->residual = t->residual;
-  } else if (its > 0)
-    PetscCall(Follow(s, report));
-  t->state = TRIAL_NONE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The first residual, that of the guess; on the grid a trial is wanted. */
-static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q) {
+/* The first residual, that of the guess. */
+static PetscErrorCode Begin(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
   const Mobility m = s->coupling->mobility;
-  Trial *t = &s->trial;
   PetscFunctionBeginUser;
   PetscCall(ReducedBegin(s->reduced, q));
   PetscCall(m->stokes ? Reference(s, q) : FreeReference(s));
   PetscCall(VecSet(s->x, 0));
   if (s->guess) PetscCall(UnknownsPack(s->unknowns, q->V, q->solid, q->sigma, s->x));
   PetscCall(ReducedAdd(s->reduced, s->x, s->x, s->b));
+  PetscCall(VecNorm(s->b, NORM_2, &report->residual));
   s->reference = PetscSqrtReal(PetscSqr(s->reference) + PetscSqr(s->unknowns->length) * m->measures.past);
-  PetscCall(VecSet(s->pending, 0));
-  PetscCall(VecNorm(s->b, NORM_2, &t->scale));
-  t->state = m->stokes && t->scale > 0 ? TRIAL_WANTED : TRIAL_NONE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A correction by a KSPSolve. */
+static PetscErrorCode Iterate(CoupledSolver s, SolveReport *report) {
+  PetscInt its;
+  PetscFunctionBeginUser;
+  PetscCall(KSPSolve(s->ksp, s->b, s->change));
+  PetscCall(KSPGetIterationNumber(s->ksp, &its));
+  PetscCall(KSPGetConvergedReason(s->ksp, &report->why));
+  PetscCall(KSPGetResidualNorm(s->ksp, &report->residual));
+  report->its = report->why < 0 ? its : report->its + its; /* a failure names the iterations of its KSPSolve */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the correction; b becomes the residual that is left. */
+static PetscErrorCode Follow(CoupledSolver s, SolveReport *report) {
+  PetscFunctionBeginUser;
+  PetscCall(VecAXPY(s->x, 1, s->change));
+  PetscCall(ReducedAdd(s->reduced, s->change, s->x, s->b));
+  PetscCall(VecNorm(s->b, NORM_2, &report->residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, SolveReport *report) {
   PetscReal rtol, atol;
   PetscFunctionBeginUser;
-  *report = (SolveReport){0};
+  *report = (SolveReport){.why = KSP_CONVERGED_RTOL};
   PetscCall(PreconditionerSetUp(s->preconditioner, q->graded));
   if (s->preconditioner->failed) {
     report->why = KSP_DIVERGED_PC_FAILED;
     report->residual = NAN;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Begin(s, q));
+  PetscCall(Begin(s, q, report));
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   const PetscReal goal = PetscMax(rtol * s->reference, atol);
+  if (s->coupling->mobility->stokes && report->residual > goal) { /* the preconditioned residual */
+    PetscCall(PreconditionerApply(s->preconditioner, s->b, s->change));
+    report->its = 1;
+    PetscCall(Follow(s, report));
+  }
   for (int round = 0; round < MOST_ROUNDS; round++) { /* rounding may spoil GMRES's own residual in stiff cases */
-    PetscCall(Correct(s, goal, report));
-    if (report->why < 0 || report->residual <= 2 * goal) break;
+    if (report->residual <= (round ? 2 : 1) * goal) break;
+    PetscCall(Iterate(s, report));
+    if (report->why < 0) break;
+    PetscCall(Follow(s, report));
   }
   report->measures = s->coupling->mobility->measures;
   PreconditionerSolved(s->preconditioner, report->its);
