@@ -189,7 +189,9 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
   PetscCall(KSPGetTolerances(s->ksp, &rtol, &atol, NULL, NULL));
   const PetscReal goal = PetscMax(rtol * s->reference, atol);
   if (s->coupling->mobility->stokes && report->residual > goal) { /* the preconditioned residual */
+    PetscCall(VecScale(s->b, 1 / report->residual));              /* of norm 1, as from KSP: units change no bit */
     PetscCall(PreconditionerApply(s->preconditioner, s->b, s->change));
+    PetscCall(VecScale(s->change, report->residual));
     report->its = 1;
     PetscCall(Follow(s, report));
   }
