@@ -17,7 +17,7 @@ PYTHON := /usr/bin/python3
 PYTHON_DIR ?= $(PREFIX)/lib/python$(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')/dist-packages
 
 # Debian packages: to build and run, then to test.
-PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev openmpi-bin libopenblas0-serial \
+PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev libmuparser-dev openmpi-bin libopenblas0-serial \
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
   python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
@@ -41,7 +41,7 @@ endif
 FOR := $(MACHINE)$(if $(SANITIZE)$(COVERAGE),,$(if $(ARCH), $(ARCH_OPTION)=$(ARCH)))
 
 # Of pkg-config; Debian calls its HDF5 with MPI hdf5-openmpi.
-MODULES := PETSc hdf5-openmpi fftw3
+MODULES := PETSc hdf5-openmpi fftw3 muparser
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
 COMMA := ,
 OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g$(if $(ARCH), $(ARCH_OPTION)=$(ARCH))))

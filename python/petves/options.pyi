@@ -14,12 +14,14 @@ class Options(TypedDict, total=False):
     domain_cells: Value  # cells in x and y; cells must be square
     domain_bc_x: Literal['wall', 'periodic', 'free'] | None  # boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields
     domain_bc_y: Literal['wall', 'periodic', 'free'] | None  # boundaries at y_min and y_max; periodic where x is periodic too
-    flow_type: Literal['quiescent', 'shear', 'poiseuille', 'extension', 'uniform', 'custom'] | None  # background flow; custom: a function given from Python or C
+    flow_type: Literal['quiescent', 'shear', 'poiseuille', 'extension', 'uniform', 'custom', 'formula'] | None  # background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type
     flow_rate: Value  # rate of shear or extension (1/time)
     flow_chi: Value  # in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle
     flow_peak_velocity: Value  # u_max of poiseuille (length/time)
     flow_ca: Value  # in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w
     flow_velocity: Value  # uniform: u_x,u_y (length/time)
+    flow_u: Value  # formula: u_x as a formula of x, y and t, in quotes, such as "sin(pi*y)*cos(2*t)"; a blank goes before a minus sign at its beginning (length/time)
+    flow_v: Value  # formula: u_y (length/time)
     flow_half_width: Value  # L_y of poiseuille: half the channel's height (length)
     flow_center_x: Value  # x_c of the background flow (length)
     flow_center_y: Value  # y_c of the background flow (length)

@@ -254,7 +254,7 @@ PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, Vec k, char messag
     }
   PetscCall(VecRestoreArray(k, &a));
   PetscCall(PetscFree(u));
-  if (flow->type == FLOW_CUSTOM) PetscCall(AgreeMessage(l->comm, message));
+  if (FlowIsCustom(flow)) PetscCall(AgreeMessage(l->comm, message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,8 +18,8 @@ typedef struct {
 } IntList;
 
 /* What a row's offset holds: PetscReal, PetscInt, PetscBool, PetscInt (index in the range's list),
-   char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN], RealList, IntList. */
-typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_ENUM, OPT_NAME, OPT_PATH, OPT_REALS, OPT_INTS } OptionType;
+   char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN] (a file, or any text), RealList, IntList. */
+typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_ENUM, OPT_NAME, OPT_PATH, OPT_TEXT, OPT_REALS, OPT_INTS } OptionType;
 
 /* What has to be there for an option to mean something: an enum in the values that is one of some, or a condition. */
 typedef struct {
@@ -88,8 +88,9 @@ PETSC_EXTERN PetscErrorCode OptionText(const OptionTable *table, const void *val
 PETSC_EXTERN PetscErrorCode OptionValue(const OptionTable *table, const void *values, PetscInt i, char text[],
                                         size_t length);
 
-/* OptionPrint - one line of an options file, "-name value"; a value with blanks, # or ' goes between double quotes. A
-   value that no options file can hold is no value of a table (OptionParse refuses it). Not collective. */
+/* OptionPrint - one line of an options file, "-name value"; a value with blanks, # or ', or with a dash that would
+   begin an option, goes between double quotes. A value that no options file can hold is no value of a table
+   (OptionParse refuses it). Not collective. */
 PETSC_EXTERN void OptionPrint(FILE *file, const char name[], const char value[]);
 
 /* OptionHelp - a row for a reader: "  -name default  [range]", and its help below in lines that begin with six blanks.

@@ -1,5 +1,6 @@
 /* All options of a table: read, chosen, shown, written. */
 #include "options/options.h"
+#include <ctype.h>
 
 static void *OptionPlace(const OptionTable *t, void *values, PetscInt i) {
   return (char *)values + t->row[i].offset;
@@ -120,7 +121,7 @@ PetscErrorCode OptionValue(const OptionTable *t, const void *values, PetscInt i,
 }
 
 void OptionPrint(FILE *file, const char name[], const char value[]) {
-  const char *const quote = strpbrk(value, " #'") ? "\"" : "";
+  const char *const quote = strpbrk(value, " #'") || (*value == '-' && isalpha((unsigned char)value[1])) ? "\"" : "";
   fprintf(file, *value ? "%s %s%s%s\n" : "%s\n", name, quote, value, quote);
 }
 

@@ -111,7 +111,7 @@ static PetscErrorCode OptionParseWord(MPI_Comm comm, const OptionRow *o, const c
 
 /* A name that resolved.opts can hold, so that it repeats the run: options files have no escapes. */
 static PetscErrorCode OptionParsePath(MPI_Comm comm, const OptionRow *o, const char *text, char path[]) {
-  PetscBool plain = text[0] == '-' ? PETSC_FALSE : PETSC_TRUE;
+  PetscBool plain = o->type == OPT_PATH && text[0] == '-' ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionBeginUser;
   for (const char *c = text; *c && plain; c++)
     plain = iscntrl((unsigned char)*c) || *c == '"' ? PETSC_FALSE : PETSC_TRUE;
@@ -139,6 +139,7 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
     *(PetscInt *)place = (PetscInt)x;
     break;
   case OPT_PATH:
+  case OPT_TEXT:
     PetscCall(OptionParsePath(comm, o, text, (char *)place));
     break;
   case OPT_REALS:
@@ -163,7 +164,8 @@ PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(room, text));
   if (o->type == OPT_BOOL) PetscCall(PetscStrncpy(*text, *(const PetscBool *)place ? "true" : "false", room));
-  if (o->type == OPT_NAME || o->type == OPT_PATH) PetscCall(PetscStrncpy(*text, (const char *)place, room));
+  if (o->type == OPT_NAME || o->type == OPT_PATH || o->type == OPT_TEXT)
+    PetscCall(PetscStrncpy(*text, (const char *)place, room));
   if (o->type == OPT_ENUM) {
     const char *p = o->range;
     for (PetscInt k = *(const PetscInt *)place; k > 0; k--) p = strchr(p, '|') + 1;

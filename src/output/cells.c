@@ -44,7 +44,7 @@ static PetscErrorCode CellComponent(Scheme s, int c, const PetscScalar w[], Pets
     }
   }
   PetscCall(PetscFree2(X, u));
-  if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(g->comm, message));
+  if (FlowIsCustom(&s->scene->flow)) PetscCall(AgreeMessage(g->comm, message));
   PetscCheck(!*message, g->comm, PETSC_ERR_USER_INPUT, "%s", message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -49,7 +49,7 @@ static const struct {
 static PetscReal VesicleCompression(Scene scene, PetscInt v) {
   const Shape *s = &scene->shape;
   PetscReal mean[2], xx = 0, yy = 0, xy = 0, G[2][2];
-  if (scene->flow.type == FLOW_CUSTOM) return 0;
+  if (FlowIsCustom(&scene->flow)) return 0;
   ShapeMiddle(s, v, mean);
   for (PetscInt k = s->start[v]; k < s->start[v + 1]; k++) {
     const PetscReal x = s->X[2 * k] - mean[0], y = s->X[2 * k + 1] - mean[1];

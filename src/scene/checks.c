@@ -182,16 +182,18 @@ static PetscErrorCode SceneCheckFlow(Scene s) {
      "-domain_box {-domain_box}: empty; allowed: x_min < x_max and y_min < y_max"},
     {bc[0] == BC_WALL && bc[1] == BC_PERIODIC,
      "-domain_bc_y periodic: with walls in x that is a channel along y; allowed: the scene turned by 90 degrees, -domain_bc_x periodic -domain_bc_y wall with x and y of box, cells, centres, angles and flow exchanged"},
-    {s->fluid.inertia == INERTIA_CONVECTIVE && type == FLOW_CUSTOM,
-     "-fluid_inertia convective: not with -flow_type custom, whose gradient is not known; allowed: none, unsteady"},
+    {s->fluid.inertia == INERTIA_CONVECTIVE && FlowIsCustom(&s->flow),
+     "-fluid_inertia convective: not with -flow_type {-flow_type}, whose gradient is not known; allowed: none, unsteady"},
+    {type == FLOW_FORMULA && !SceneGiven(s, "-flow_u") && !SceneGiven(s, "-flow_v"),
+     "-flow_type formula: no formula given; allowed: with -flow_u or -flow_v"},
     {type == FLOW_UNIFORM && u[0] != 0 && bc[0] == BC_WALL,
      "-flow_velocity {-flow_velocity}: into the walls at x_min and x_max; allowed: along walls, which move with it, or -domain_bc_x periodic"},
     {type == FLOW_UNIFORM && u[1] != 0 && bc[1] == BC_WALL,
      "-flow_velocity {-flow_velocity}: into the walls at y_min and y_max; allowed: along walls, which move with it, or -domain_bc_y periodic"},
     {total && !SceneIsProjection(s),
      "-flow_form total: not with -scheme_type {-scheme_type}, whose near field and fast solves have walls at rest; allowed: disturbance, or -scheme_type split or penalty"},
-    {moved && type == FLOW_CUSTOM,
-     "-flow_form total: not with -flow_type custom; allowed: -flow_form disturbance"},
+    {moved && FlowIsCustom(&s->flow),
+     "-flow_form total: not with -flow_type {-flow_type}; allowed: -flow_form disturbance"},
     {moved && bc[1] == BC_PERIODIC,
      "-flow_form total: the background flow is not periodic in y; allowed: -domain_bc_y wall or -flow_form disturbance"},
     {moved && type == FLOW_EXTENSION && bc[0] == BC_PERIODIC,
@@ -281,7 +283,7 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   /* clang-format on */
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, unbounded));
-  PetscCall(FlowCheckDivergence(s->comm, &s->flow, f->box, FluidSpecCellSize(f)));
+  PetscCall(FlowCheckDivergence(s->comm, &s->flow, f->box, FluidSpecCellSize(f), s->time.end));
   PetscCall(SceneCheckList(s, "-vesicle_density_difference", s->gravity.density.n, 1, entries, what, "a vesicle"));
   PetscCall(REFUSE(s, forces));
   if (vesicles)

@@ -29,14 +29,18 @@ void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, Petsc
   const FlowForm f = FlowFormOf(flow);
   for (int k = 0; k < 2; k++) u[k] = f.c[k] + f.G[k][0] * dx + f.G[k][1] * dy;
   u[0] += f.q * dy * dy;
-  if (flow->type == FLOW_CUSTOM && flow->function(t, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
+  if (FlowIsCustom(flow) && flow->function(t, 1, X, u, flow->ctx)) u[0] = u[1] = NAN;
+}
+
+static const char *FlowName(const Flow *flow) {
+  return flow->type == FLOW_CUSTOM ? "custom" : "formula";
 }
 
 PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[],
                               char message[PETVES_MAX_MESSAGE]) {
   PetscFunctionBeginUser;
   message[0] = 0;
-  if (flow->type != FLOW_CUSTOM) {
+  if (!FlowIsCustom(flow)) {
     for (PetscInt k = 0; k < n; k++) FlowVelocity(flow, t, X[2 * k], X[2 * k + 1], &u[2 * k]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -49,10 +53,9 @@ PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscInt n, const P
   }
   for (PetscInt k = 0; k < n && !*message; k++)
     if (PetscIsInfOrNanReal(u[2 * k]) || PetscIsInfOrNanReal(u[2 * k + 1]))
-      PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
-                              "-flow_type custom: u_inf is (%g, %g) at (%g, %g), time %g; allowed: finite numbers",
-                              (double)u[2 * k], (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1],
-                              (double)t));
+      PetscCall(PetscSNPrintf(
+          message, PETVES_MAX_MESSAGE, "-flow_type %s: u_inf is (%g, %g) at (%g, %g), time %g; allowed: finite numbers",
+          FlowName(flow), (double)u[2 * k], (double)u[2 * k + 1], (double)X[2 * k], (double)X[2 * k + 1], (double)t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,19 +80,23 @@ PetscReal FlowShearRate(const Flow *flow) {
 #define STEP 1e-3      /* of the differences, in cells: their error is a millionth of the flow's change over a cell */
 #define TOLERATED 1e-3 /* divergence over the largest gradient: flows from tables of numbers have some */
 #define ROUNDOFF 1e-11 /* of a velocity, which differences show too */
+#define LATER 0.618    /* of the end time: where formulas are looked at too, for a flow that begins at rest */
 
-PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h) {
+PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h,
+                                   PetscReal end) {
   const PetscReal step = STEP * h;
   char message[PETVES_MAX_MESSAGE] = "";
-  PetscReal divergence = 0, where[2] = {0, 0}, gradient = 0, speed = 0; /* the largest values */
+  PetscReal divergence = 0, where[3] = {0, 0, 0}, gradient = 0, speed = 0; /* the largest values */
+  const PetscInt points = POINTS * POINTS, times = flow->type == FLOW_FORMULA ? 2 : 1;
   PetscFunctionBeginUser;
-  if (flow->type != FLOW_CUSTOM) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < POINTS * POINTS && !*message; k++) {
+  if (!FlowIsCustom(flow)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < times * points && !*message; k++) {
     const PetscReal x = box[0] + (box[1] - box[0]) * ((PetscReal)(k % POINTS) + 0.5) / POINTS;
-    const PetscReal y = box[2] + (box[3] - box[2]) * ((PetscReal)(k / POINTS) + 0.5) / POINTS;
+    const PetscReal y = box[2] + (box[3] - box[2]) * ((PetscReal)(k % points / POINTS) + 0.5) / POINTS;
+    const PetscReal t = k < points ? 0 : LATER * end;
     const PetscReal at[8] = {x + step, y, x - step, y, x, y + step, x, y - step};
     PetscReal u[8] = {0}, slope[4];
-    PetscCall(FlowVelocities(flow, 0, 4, at, u, message));
+    PetscCall(FlowVelocities(flow, t, 4, at, u, message));
     for (int j = 0; j < 4; j++) { /* u_x and u_y by x, then by y */
       const PetscReal *ahead = u + 4 * (j / 2) + j % 2;
       slope[j] = (ahead[0] - ahead[2]) / (2 * step);
@@ -100,12 +107,14 @@ PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscR
     divergence = slope[0] + slope[3];
     where[0] = x;
     where[1] = y;
+    where[2] = t;
   }
   if (!*message && PetscAbsReal(divergence) > TOLERATED * gradient + ROUNDOFF * speed / step)
     PetscCall(PetscSNPrintf(message, sizeof(message),
-                            "-flow_type custom: u_inf has the divergence %.3g at (%.3g, %.3g), time 0; allowed: none, "
+                            "-flow_type %s: u_inf has the divergence %.3g at (%.3g, %.3g), time %.3g; allowed: none, "
                             "here up to %.1g, a thousandth of its largest gradient",
-                            (double)divergence, (double)where[0], (double)where[1], (double)(TOLERATED * gradient)));
+                            FlowName(flow), (double)divergence, (double)where[0], (double)where[1], (double)where[2],
+                            (double)(TOLERATED * gradient)));
   PetscCall(AgreeMessage(comm, message));
   PetvesCheck(!*message, comm, "%s", message);
   PetscFunctionReturn(PETSC_SUCCESS);

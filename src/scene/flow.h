@@ -1,18 +1,37 @@
-/* Background flow u_inf, an exact solution of the Stokes equations, or of a caller's own. Lengths and times are in the
+/* Background flow u_inf, an exact solution of the Stokes equations, or a caller's own. Lengths and times are in the
    user's units. */
 #pragma once
 #include "options/options.h"
 
-typedef enum { FLOW_QUIESCENT, FLOW_SHEAR, FLOW_POISEUILLE, FLOW_EXTENSION, FLOW_UNIFORM, FLOW_CUSTOM } FlowType;
+typedef enum {
+  FLOW_QUIESCENT,
+  FLOW_SHEAR,
+  FLOW_POISEUILLE,
+  FLOW_EXTENSION,
+  FLOW_UNIFORM,
+  FLOW_CUSTOM,
+  FLOW_FORMULA
+} FlowType;
 
 typedef struct {
   PetscInt type; /* FlowType */
   PetscReal rate, peak, half_width, center[2];
-  RealList velocity;   /* FLOW_UNIFORM: u_x, u_y */
-  PetscReal chi, ca;   /* what the user gives in place of rate or peak */
-  PetvesFlow function; /* FLOW_CUSTOM: the caller's, with its context */
+  RealList velocity;                   /* FLOW_UNIFORM: u_x, u_y */
+  PetscReal chi, ca;                   /* what the user gives in place of rate or peak */
+  char formula[2][PETSC_MAX_PATH_LEN]; /* FLOW_FORMULA: u_x, u_y */
+  PetvesFlow function;                 /* FLOW_CUSTOM: the caller's, with its context; FLOW_FORMULA: the formulas' */
   void *ctx;
 } Flow;
+
+/* FlowIsCustom - the velocity is a function of which nothing else is known. */
+static inline PetscBool FlowIsCustom(const Flow *flow) {
+  return flow->type == FLOW_CUSTOM || flow->type == FLOW_FORMULA ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* FlowReadFormulas - make the function of FLOW_FORMULA (formula.c). Collective; stops with the user's message.
+   FlowDropFormulas - free it. */
+PETSC_EXTERN PetscErrorCode FlowReadFormulas(MPI_Comm comm, Flow *flow);
+PETSC_EXTERN PetscErrorCode FlowDropFormulas(Flow *flow);
 
 /* FlowVelocity - u_inf[2] at (x, y) and time t; NaN when a custom flow's function fails. */
 PETSC_EXTERN void FlowVelocity(const Flow *flow, PetscReal t, PetscReal x, PetscReal y, PetscReal u[2]);
@@ -26,9 +45,10 @@ PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscI
 /* FlowShearRate - the fastest rate at which the flow shears a vesicle (1/time); 0 where it is not known. */
 PETSC_EXTERN PetscReal FlowShearRate(const Flow *flow);
 
-/* FlowCheckDivergence - that a custom flow has no divergence, by differences at points all over the box of cells of
-   size h. Collective; stops with the user's message. */
-PETSC_EXTERN PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h);
+/* FlowCheckDivergence - that a custom flow has no divergence at time 0, and one of formulas none later before the end
+   either, by differences at points all over the box of cells of size h. Collective; stops with the user's message. */
+PETSC_EXTERN PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h,
+                                                PetscReal end);
 
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);

@@ -77,7 +77,7 @@ static PetscErrorCode SceneCheckStiffness(Scene scene) {
    shear flow gets the warning). */
 static PetscBool FlowIsPaper(Scene scene) {
   const PetscInt type = scene->flow.type;
-  return type == FLOW_QUIESCENT || type == FLOW_SHEAR || type == FLOW_CUSTOM ? PETSC_TRUE : PETSC_FALSE;
+  return type == FLOW_QUIESCENT || type == FLOW_SHEAR || FlowIsCustom(&scene->flow) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscBool SceneHasInertia(Scene scene, PetscReal R0) {

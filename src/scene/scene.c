@@ -44,6 +44,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
              "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
   s->flow.function = flow;
   s->flow.ctx = ctx;
+  if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(comm, &s->flow));
   SceneDescribeFluid(s);
   /* 6  the vesicles, the obstacles, the flow from numbers that go by their size, the markers with the kernel's spacing
    * if none is given
@@ -67,6 +68,7 @@ PetscErrorCode SceneDestroy(Scene *scene) {
   Draft s = (Draft)*scene;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FlowDropFormulas(&s->flow));
   PetscCall(SceneDropShape(s));
   PetscCall(SceneDropObstacles(s));
   PetscCall(OptionsDestroy(&s->options, s));

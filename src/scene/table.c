@@ -74,6 +74,7 @@ static const OptionNeed
   need_sheared = {"-flow_type shear, poiseuille or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_POISEUILLE) | IS(FLOW_EXTENSION) | IS(FLOW_UNIFORM)},
   need_flow = {"a -flow_type that is not quiescent", AT(flow.type), ~(IS(FLOW_QUIESCENT))},
   need_uniform = {"-flow_type uniform", AT(flow.type), IS(FLOW_UNIFORM)},
+  need_formula = {"-flow_type formula", AT(flow.type), IS(FLOW_FORMULA)},
   need_vesicles = {"vesicles (-vesicle_shape)", .met = HasVesicles},
   need_ellipses = {"-vesicle_shape ellipse", AT(vesicles.shape), IS(SHAPE_ELLIPSE)},
   need_sizes = {"-vesicle_shape ellipse or biconcave", AT(vesicles.shape), IS(SHAPE_ELLIPSE) | IS(SHAPE_BICONCAVE)},
@@ -110,12 +111,14 @@ static const OptionRow table[] = {
   {"-domain_cells", OPT_INTS, AT(domain.cells), "128,128", ">=8", "cells in x and y; cells must be square"},
   {"-domain_bc_x", OPT_ENUM, AT(fluid.bc[0]), "wall", "wall|periodic|free", "boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields"},
   {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max; periodic where x is periodic too"},
-  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom", "background flow; custom: a function given from Python or C"},
+  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom|formula", "background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)", &need_strain},
   {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle", &need_strain, MAY_CHANGE},
   {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)", &need_channel},
   {"-flow_ca", OPT_REAL, AT(flow.ca), "0", "any", "in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w", &need_channel, MAY_CHANGE},
   {"-flow_velocity", OPT_REALS, AT(flow.velocity), "1,0", "any", "uniform: u_x,u_y (length/time)", &need_uniform},
+  {"-flow_u", OPT_TEXT, AT(flow.formula[0]), "0", "", "formula: u_x as a formula of x, y and t, in quotes, such as \"sin(pi*y)*cos(2*t)\"; a blank goes before a minus sign at its beginning (length/time)", &need_formula},
+  {"-flow_v", OPT_TEXT, AT(flow.formula[1]), "0", "", "formula: u_y (length/time)", &need_formula},
   {"-flow_half_width", OPT_REAL, AT(flow.half_width), "3", ">0", "L_y of poiseuille: half the channel's height (length)", &need_channel},
   {"-flow_center_x", OPT_REAL, AT(flow.center[0]), "0", "any", "x_c of the background flow (length)", &need_extension},
   {"-flow_center_y", OPT_REAL, AT(flow.center[1]), "0", "any", "y_c of the background flow (length)", &need_sheared},
@@ -204,6 +207,10 @@ static PetscBool IsBiconcave(const void *scene) {
   return ((Scene)scene)->vesicles.shape == SHAPE_BICONCAVE ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool HasFormula(const void *scene) {
+  return SceneGiven((Scene)scene, "-flow_u") || SceneGiven((Scene)scene, "-flow_v") ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscBool IsProjection(const void *scene) {
   return SceneIsProjection((Scene)scene);
 }
@@ -233,7 +240,7 @@ static PetscBool IsAdaptive(const void *scene) {
 /* At rest for the error that the area target leaves there; a flow has steps of its own. */
 static void LargestStep(const void *scene, char value[OPTION_MAX_NAME]) {
   const Scene s = (Scene)scene;
-  const PetscBool rests = FlowShearRate(&s->flow) == 0 && s->flow.type != FLOW_CUSTOM ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool rests = FlowShearRate(&s->flow) == 0 && !FlowIsCustom(&s->flow) ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal most = rests ? SceneRestTime(s) : SceneFlowStep(s);
   if (most < PETSC_MAX_REAL) (void)snprintf(value, OPTION_MAX_NAME, "%.6g", (double)most);
 }
@@ -260,6 +267,7 @@ static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
    coupled scheme. The box part is the grid's. */
 /* clang-format off */
 const OptionDefault scene_defaults[] = {
+  {"-flow_type", HasFormula, "formula", NULL, "it is given by formulas", NULL},
   {"-vesicle_reduced_area", IsBiconcave, "0.65", NULL, "the outline is biconcave", "biconcave: 0.35 to 0.9, %s when not given"},
   {"-scheme_order", IsProjection, "1", NULL, "splitting errors and forward steps of markers are of first order", "split and penalty are of order %s"},
   {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},

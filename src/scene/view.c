@@ -40,7 +40,7 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
 
 /* The background flow, and its dimensionless number where it has one. */
 static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
-  static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "uniform", "custom"};
+  static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "uniform", "custom", "formula"};
   const PetscInt type = scene->flow.type;
   const PetscBool channel = type == FLOW_POISEUILLE ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI), c_b = scene->membrane.bending;
@@ -54,6 +54,9 @@ static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
     PetscCall(PetscSNPrintf(number, sizeof(number), ": %s = %g with R0 = %g, nu R0^3/c_b = %g",
                             channel ? "Ca = u_max nu R0^2/c_b" : "chi = rate nu R0^3/c_b",
                             (double)(channel ? value * time / R0 : value * time), (double)R0, (double)time));
+  if (type == FLOW_FORMULA)
+    PetscCall(
+        PetscSNPrintf(of, sizeof(of), ", u = %.100s, v = %.100s", scene->flow.formula[0], scene->flow.formula[1]));
   PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s%s%s\n", names[type], of, number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

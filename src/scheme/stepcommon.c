@@ -88,7 +88,7 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   PetscCall(FlowVelocities(&s->scene->flow, t, s->membrane->layout->n, x, u, s->report.failure));
   PetscCall(VecRestoreArray(s->background, &u));
   PetscCall(VecRestoreArrayRead(X, &x));
-  if (s->scene->flow.type == FLOW_CUSTOM) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
+  if (FlowIsCustom(&s->scene->flow)) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

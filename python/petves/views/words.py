@@ -15,6 +15,7 @@ FLOWS = {
     "poiseuille": "The background is a Poiseuille flow of peak velocity {flow_peak_velocity} and half width {flow_half_width}",
     "extension": "The background is an extension of rate {flow_rate}",
     "uniform": "The background is a uniform flow of velocity {flow_velocity}",
+    "formula": "The background flow is u = {flow_u}, v = {flow_v}",
     "custom": "The background flow is a function of the caller's",
 }
 INERTIA = {
