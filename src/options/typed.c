@@ -20,8 +20,9 @@ typedef struct {
 /* The source of words: the command line, an environment variable or a file. */
 typedef struct _Source {
   const struct _Source *outer; /* the file that includes this one */
+  const char *option;          /* that names the file; NULL: no file */
   const char *name;            /* "PETSC_OPTIONS" or a file's path; NULL: the command line */
-  const char *line;            /* of a file, with its number */
+  const char *line;            /* of a file, with its number; an option of a file of YAML, without */
   int number;
   dev_t device;
   ino_t file;
@@ -31,14 +32,18 @@ typedef struct _Source {
 static void PETSC_ATTRIBUTE_FORMAT(3, 4) TypedWrong(Typed *t, const Source *from, const char format[], ...) {
   int used = 0;
   va_list arguments;
-  if (from->line)
+  if (from->number)
     used = snprintf(t->error, sizeof(t->error), "-options_file %.200s: line %d is \"%.*s\": ", from->name, from->number,
                     EXCERPT, from->line);
+  else if (from->option)
+    used = snprintf(t->error, sizeof(t->error), "%s %.200s: ", from->option, from->name);
   else if (from->name)
     used = snprintf(t->error, sizeof(t->error), "%.200s: ", from->name);
   va_start(arguments, format);
   (void)vsnprintf(t->error + used, sizeof(t->error) - (size_t)used, format, arguments);
   va_end(arguments);
+  for (char *p = t->error; *p; p++)
+    if (iscntrl((unsigned char)*p)) *p = ' ';
 }
 
 static void TypedAppend(Typed *t, const char *name, const char *value) {
@@ -91,7 +96,7 @@ static void TypedWrongWord(Typed *t, const Source *from, const char *name, const
     TypedWrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or petves run FILE", word);
 }
 
-static void TypedReadFile(Typed *t, const char *path, const Source *outer);
+static void TypedReadFile(Typed *t, const char *option, const char *path, const Source *outer);
 
 static PetscBool NameHasPart(const char *name, const char *const part[], PetscBool first) {
   for (; *part; part++) {
@@ -116,7 +121,12 @@ PetscBool TypedIsOwn(const char *name, const char *value) {
 }
 
 /* Ways to give options that PETSc follows without a check of their words. */
-static const char *const others[] = {"-options_file_yaml", "-options_string_yaml", "-saws", NULL};
+static const char *const others[] = {"-options_string_yaml", "-saws", NULL};
+
+/* Whether an option names a file of options. */
+static PetscBool NameIsFile(const char *name) {
+  return strcasecmp(name, "-options_file") && strcasecmp(name, "-options_file_yaml") ? PETSC_FALSE : PETSC_TRUE;
+}
 
 /* Pairs of names and values. files: -options_file is to be read (1), left out (-1). */
 static void TypedTakeWords(Typed *t, const Source *from, int n, const Word word[], int files) {
@@ -129,7 +139,7 @@ static void TypedTakeWords(Typed *t, const Source *from, int n, const Word word[
     if (!*t->error && value && *value == '=' && !word[k - 1].quoted)
       TypedWrong(t, from, "%.60s %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, value, name,
                  value[1] ? value + 1 : "VALUE");
-    const PetscBool file = strcasecmp(name, "-options_file") ? PETSC_FALSE : PETSC_TRUE;
+    const PetscBool file = NameIsFile(name);
     if (!*t->error && NameHasPart(name, others, PETSC_TRUE))
       TypedWrong(t, from, "%.60s: petves does not read options so; allowed: -options_file, or the command line", name);
     if (!*t->error && !file && from->line && !t->own && TypedIsOwn(name, value))
@@ -138,9 +148,9 @@ static void TypedTakeWords(Typed *t, const Source *from, int n, const Word word[
     if (!file)
       TypedAppend(t, name, value);
     else if (!value)
-      TypedWrong(t, from, "-options_file: given without a value; allowed: a readable file of options");
+      TypedWrong(t, from, "%s: given without a value; allowed: a readable file of options", name);
     else if (files > 0)
-      TypedReadFile(t, value, from);
+      TypedReadFile(t, name, value, from);
   }
 }
 
@@ -216,8 +226,35 @@ static void TypedTakeText(Typed *t, Source *from, char *text, size_t length) {
   free(copy);
 }
 
-static void TypedReadFile(Typed *t, const char *path, const Source *outer) {
-  Source from = {.outer = outer, .name = path};
+/* Options of a text of YAML, as PETSc reads it: nested names are joined with _, lists with commas. */
+static void TypedTakeYaml(Typed *t, Source *from, const char *text, size_t length) {
+  PetscOptions options = NULL;
+  char **name = NULL, **value = NULL;
+  PetscInt n = 0;
+  PetscErrorCode error = strlen(text) < length ? PETSC_ERR_FILE_READ : PETSC_SUCCESS;
+  (void)PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL);
+  if (!error) error = PetscOptionsCreate(&options);
+  if (!error) error = PetscOptionsInsertStringYAML(options, text);
+  if (!error) error = PetscOptionsLeftGet(options, &n, &name, &value);
+  (void)PetscPopErrorHandler();
+  if (error) TypedWrong(t, from, "cannot be read; allowed: names with values, lists or names of their own in YAML");
+  for (PetscInt k = 0; k < 2 * n && !*t->error; k++) { /* the files that it includes, then what is its own */
+    char option[MOST_NAME + 2];
+    const Word word[2] = {{option, PETSC_FALSE}, {value[k % n], PETSC_TRUE}};
+    (void)snprintf(option, sizeof(option), "-%s", name[k % n]);
+    from->line = option;
+    if (NameIsFile(option) == (k < n ? PETSC_TRUE : PETSC_FALSE))
+      TypedTakeWords(t, from, word[1].text ? 2 : 1, word, 1);
+  }
+  if (!error) (void)PetscOptionsLeftRestore(options, &n, &name, &value);
+  if (options) (void)PetscOptionsDestroy(&options);
+}
+
+/* A file is of YAML by the option that names it, or by its own name. */
+static void TypedReadFile(Typed *t, const char *option, const char *path, const Source *outer) {
+  const char *const end = strrchr(path, '.');
+  const PetscBool named = end && (!strcmp(end, ".yaml") || !strcmp(end, ".yml")) ? PETSC_TRUE : PETSC_FALSE;
+  Source from = {.outer = outer, .option = option, .name = path};
   const char *why = NULL;
   struct stat status;
   size_t length;
@@ -233,11 +270,13 @@ static void TypedReadFile(Typed *t, const char *path, const Source *outer) {
     if (!why && S_ISDIR(status.st_mode)) why = "is a folder";
     if (!why) text = TypedFileText(f, &length, &why);
   }
-  if (!text && outer && outer->line)
+  if (!text && outer && outer->number)
     TypedWrong(t, outer, "%s (%s); allowed: a readable file of options", f ? "not read" : "cannot be opened", why);
   else if (!text)
-    TypedWrong(t, outer ? outer : &(Source){0}, "-options_file %.300s: %s (%s); allowed: a readable file of options",
-               path, f ? "not read" : "cannot be opened", why);
+    TypedWrong(t, outer ? outer : &(Source){0}, "%s %.300s: %s (%s); allowed: a readable file of options", option, path,
+               f ? "not read" : "cannot be opened", why);
+  else if (named || strcasecmp(option, "-options_file"))
+    TypedTakeYaml(t, &from, text, length);
   else
     TypedTakeText(t, &from, text, length);
   free(text);
@@ -245,7 +284,7 @@ static void TypedReadFile(Typed *t, const char *path, const Source *outer) {
 }
 
 void TypedFile(Typed *t, const char path[]) {
-  TypedReadFile(t, path, NULL);
+  TypedReadFile(t, "-options_file", path, NULL);
 }
 
 /* PETSc's own file of the user, if there is one, unless the command line says -skip_petscrc. Those of the folder where
@@ -258,7 +297,7 @@ static void TypedTakePetscFile(Typed *t, int n, char **word) {
     if (!strcasecmp(word[k], "-skip_petscrc")) return;
   (void)snprintf(path, sizeof(path), "%s/.petscrc", home ? home : "");
   t->own = PETSC_TRUE;
-  if (home && !stat(path, &status) && S_ISREG(status.st_mode)) TypedReadFile(t, path, NULL);
+  if (home && !stat(path, &status) && S_ISREG(status.st_mode)) TypedReadFile(t, "-options_file", path, NULL);
   t->own = PETSC_FALSE;
 }
 
@@ -283,7 +322,7 @@ void TypedCommand(Typed *t, int n, char **word) {
   if (!*t->error) TypedTakePetscFile(t, n, word);
   TypedTakeEnvironment(t);
   for (int k = 0; k + 1 < n && !*t->error; k++)
-    if (!strcasecmp(word[k], "-options_file")) TypedReadFile(t, word[k + 1], NULL);
+    if (NameIsFile(word[k])) TypedReadFile(t, word[k], word[k + 1], NULL);
   for (size_t at = 0; at < rest.used && !*t->error;) {
     const char *name = rest.text + at, *value = name + strlen(name) + 1;
     TypedAppend(t, name, *value ? value + 1 : NULL);
