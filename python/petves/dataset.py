@@ -18,7 +18,7 @@ _HAVE = {
     "1": "viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
     "time": "time dt",
-    "length": "gap length center_x center_y area_shift markers obstacles obstacle_center_x obstacle_center_y x y h",
+    "length": "gap length center_x center_y area_shift markers tracers obstacles obstacle_center_x obstacle_center_y x y h",
     "length^2": "area",
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
     "length^2/time": "nu flux stream_function",
@@ -54,7 +54,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
     xarray.Dataset or Run
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
-        velocity (time, marker, xy) and tension (time, marker), with the coordinate vesicle of each marker, 1 for the first;
+        velocity (time, marker, xy), tension (time, marker), with the coordinate vesicle of each marker, 1 for the first, and tracers (time, tracer, xy);
         obstacles (obstacle_marker, xy), where they move (time, obstacle_marker, xy), and obstacle_force (time,
         obstacle_marker, xy), where there are any, with the coordinate obstacle. p is without the mean gradient along x,
         which is pressure_gradient (time): `petves.quantities.total_pressure` has both. Above 40 vesicles each_area, ...
@@ -114,6 +114,8 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     attributes["periodic"] = "".join(name for name, period in zip("xy", run.periods) if period)
     attributes["walls"] = run.walls
     attributes["reason"] = run.summary.get("reason", "")
+    if run.tracers.size:
+        variables["tracers"] = ("time", "tracer", "xy"), run.tracers
     if run.obstacles:
         moving = len(run.obstacle_markers) > 0
         places = run.obstacle_markers if moving else np.concatenate(run.obstacles)

@@ -63,6 +63,8 @@ class Options(TypedDict, total=False):
     obstacle_file: Value  # curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own
     obstacle_spacing: Value  # spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it
     obstacle_factor: Literal['auto', 'dense', 'modes'] | None  # preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways
+    tracer_file: Value  # passive points that the flow carries along: x y a line
+    tracer_grid: Value  # tracers besides: columns and rows at equal distances in the box; 0,0: none
     delta_type: Literal['ib6', 'cbs54'] | None  # kernel between grid and markers; split, penalty: ib6
     scheme_type: Literal['split', 'penalty', 'coupled'] | None  # time-stepping scheme: the paper's, stiff springs, unsplit
     scheme_order: Value  # order in time: backward Euler, BDF2, or BDF3 wherever it predicts better; split and penalty are of order 1

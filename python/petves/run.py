@@ -68,6 +68,8 @@ class Run:
         Force of the fluid on the markers of all obstacles, one obstacle after another (length^3/time^2).
     obstacle_kinds : list of str
         "closed"; "open", with both ends at a wall; or "spanning" a period of the box.
+    tracers : ndarray, shape (T, n, 2)
+        Places of the tracers (length), not wrapped; n = 0 without any.
     summary : dict
         summary.json; empty while the run has not ended.
 
@@ -93,6 +95,7 @@ class Run:
     obstacle_markers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_kinds: list[str] = field(default_factory=list)
+    tracers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     summary: dict[str, Any] = field(default_factory=dict)
 
     @classmethod

@@ -107,6 +107,7 @@ def read_frames(file: h5py.File) -> dict[str, Any]:
         "velocity": rows("vesicle/velocity", start[-1], 2),
         "tension": rows("vesicle/tension", start[-1]),
         "start": start,
+        "tracers": rows("tracers/points", file["tracers/points"].shape[1] if "tracers" in file else 0, 2),
         "viscosity_ratio": np.ones(count) * file.attrs.get("vesicle_viscosity_ratio", 1.0),
         "bending": np.ones(count) * np.ravel(file.attrs.get("vesicle_c_b", file.attrs["c_b"])),
     } | _obstacles(file, rows)

@@ -1,5 +1,6 @@
 /* Questions about a simulation, and calls from programs that handle errors themselves (Python). */
 #include "app/simulation.h"
+#include "output/cells.h"
 #include "scheme/fields.h"
 #include <locale.h>
 #include <stdlib.h>

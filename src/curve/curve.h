@@ -93,6 +93,10 @@ PETSC_EXTERN PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], c
                                            CurveNote **note);
 PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
 
+/* PointsFromFile - the points xy[2n] of such a file as they stand there; the caller frees them. Collective. */
+PETSC_EXTERN PetscErrorCode PointsFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *n,
+                                           PetscReal **xy);
+
 /* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area
 
      V = 4 pi area/perimeter^2.

@@ -15,8 +15,8 @@ typedef struct {
   CurveNote *note;                                 /* [curves] */
   size_t end_capacity, xy_capacity, note_capacity; /* of the three arrays */
   CurveNote next;                                  /* note of the curve that is being read */
-  const char *option, *file;
-  const PetscReal *period; /* NULL: closed curves only */
+  const char *option, *file, *least;               /* how many points, for messages */
+  const PetscReal *period;                         /* NULL: closed curves only */
   char error[PETVES_MAX_MESSAGE];
 } Points;
 
@@ -107,8 +107,7 @@ static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *point
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Read the lines of the file, whose text rank 0 sends up to its end or a zero. The message of a mistake goes into
-   p->error. */
+/* Read the lines of the file, whose text rank 0 sends up to its end or a zero. */
 static PetscErrorCode PointsRead(MPI_Comm comm, Points *p) {
   char *text = NULL, *rest;
   size_t room = 0;
@@ -129,7 +128,8 @@ static PetscErrorCode PointsRead(MPI_Comm comm, Points *p) {
   for (PetscInt number = 1; rest && !*p->error; number++) PetscCall(PointsReadLine(strsep(&rest, "\n"), number, p));
   free(text);
   PetscCall(PointsEndCurve(p));
-  if (!p->curves && !*p->error) PointsRefuse(p, "0 points; allowed: at least 8 a curve");
+  if (!p->curves && !*p->error) PointsRefuse(p, "0 points; allowed: at least %s", p->least);
+  PetscCheck(!*p->error, comm, PETSC_ERR_USER_INPUT, "%s", p->error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,11 +199,10 @@ static uint64_t PointsDigest(uint64_t h, PetscInt n, const PetscReal x[]) {
 
 PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], const PetscReal period[2],
                               PetscInt *curves, Curve **curve, CurveNote **note) {
-  Points p = {.option = option, .file = file, .period = period};
+  Points p = {.option = option, .file = file, .least = "8 a curve", .period = period};
   uint64_t digest = 0xcbf29ce484222325u;
   PetscFunctionBeginUser;
   PetscCall(PointsRead(comm, &p));
-  PetscCheck(!*p.error, comm, PETSC_ERR_USER_INPUT, "%s", p.error);
   *curves = p.curves;
   PetscCall(PetscCalloc1(p.curves, curve));
   for (PetscInt k = 0; k < p.curves; k++) {
@@ -224,5 +223,16 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
     PetscCall(PetscFree(p.note));
   PetscCall(PetscFree(p.end));
   PetscCall(PetscFree(p.xy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PointsFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *n, PetscReal **xy) {
+  Points p = {.option = option, .file = file, .least = "one"};
+  PetscFunctionBeginUser;
+  PetscCall(PointsRead(comm, &p));
+  PetscCall(PetscFree(p.note));
+  PetscCall(PetscFree(p.end));
+  *n = p.n;
+  *xy = p.xy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,4 @@
-/* Velocity and pressure at cell centres. */
-#include "output/frames.h"
+#include "output/cells.h"
 #include "scheme/fields.h"
 #include "base/agree.h"
 #include "layers/layercells.h"

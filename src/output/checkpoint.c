@@ -79,6 +79,17 @@ PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme s, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CheckpointTracers(H5File *file, PetscBool write, Scheme s, Tracers *t) {
+  PetscFunctionBeginUser;
+  PetscCall(CheckpointEntry(file, write, "/tracers/points", t->n, 2, t->X));
+  PetscCall(CheckpointEntry(file, write, "/tracers/velocity", t->n, 2, t->U));
+  for (PetscInt k = 0; k < 2 * t->n; k++)
+    if (PetscIsInfOrNanReal(t->X[k]) || PetscIsInfOrNanReal(t->U[k])) file->failed = PETSC_TRUE;
+  t->t = s->state.t;
+  t->moving = s->state.step > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *n) {
   SchemeTimes *times = &n->times;
   const struct {
@@ -243,7 +254,7 @@ void CheckpointClear(Folder *folder) {
 }
 
 /* Write all of a checkpoint into the open file. /solver is what the solvers have kept from earlier steps. */
-static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r, PetscInt frames) {
+static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r, Tracers *tracers, PetscInt frames) {
   const PetscInt format = CHECKPOINT_FORMAT, numbers = SchemeMemorySize(s);
   const State *q = &s->state;
   CheckpointNumbers n = {.times = {.step = q->step, .past = s->past, .t = q->t, .dt = q->dt, .dt_last = q->dt_last},
@@ -260,6 +271,7 @@ static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r
   PetscCall(CheckpointWriteScene(s, file));
   PetscCall(CheckpointVectors(file, PETSC_TRUE, s, 0, &s->state));
   for (PetscInt j = 0; j < s->past; j++) PetscCall(CheckpointVectors(file, PETSC_TRUE, s, j + 1, &s->old[j]));
+  PetscCall(CheckpointTracers(file, PETSC_TRUE, s, tracers));
   PetscCall(PetscMalloc1(numbers, &memory));
   PetscCall(SchemeRemember(s, memory));
   PetscCall(CheckpointEntry(file, PETSC_TRUE, "/solver", numbers, 1, memory));
@@ -267,7 +279,7 @@ static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, PetscInt frames) {
+PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Tracers *tracers, PetscInt frames) {
   char path[PETSC_MAX_PATH_LEN];
   H5File file;
   PetscBool done = PETSC_TRUE;
@@ -276,7 +288,7 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Pe
   PetscCall(SchemeFields(s));
   FolderPath(c->folder, CHECKPOINT_TEMPORARY, path);
   PetscCall(H5FileOpen(c->folder->comm, path, H5_NEW, &file));
-  PetscCall(CheckpointWriteAll(&file, s, record, frames));
+  PetscCall(CheckpointWriteAll(&file, s, record, tracers, frames));
   H5FileClose(&file);
   if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;
   error = FolderCheckOwn(c->folder); /* once more: writing took time */

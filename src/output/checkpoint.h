@@ -12,6 +12,7 @@
 #include "output/folder.h"
 #include "output/h5series.h"
 #include "output/record.h"
+#include "output/tracers.h"
 
 #define CHECKPOINT_FORMAT 8
 #define CHECKPOINT_TAIL "petves checkpoint, crc32 %08x\n"
@@ -30,11 +31,11 @@ typedef struct {
   PetscInt step;  /* step of the newest checkpoint.h5 that this run wrote; -1: none */
 } Checkpoint;
 
-/* CheckpointWrite - write the scheme's state, the record and the number of scheduled frames. Rows and frames up to the
-   state must be on the disk. Collective; stops with one line when the checkpoint cannot be written, and the checkpoints
-   before it are whole. */
+/* CheckpointWrite - write the scheme's state, the record, the tracers and the number of scheduled frames. Rows and
+   frames up to the state must be on the disk. Collective; stops with one line when the checkpoint cannot be written,
+   and the checkpoints before it are whole. */
 PETSC_EXTERN PetscErrorCode CheckpointWrite(Checkpoint *checkpoint, Scheme scheme, const Record *record,
-                                            PetscInt frames);
+                                            Tracers *tracers, PetscInt frames);
 
 /* CheckpointAdopt - the checkpoint that -restart names, if it is in the folder, becomes the newest one: later ones
    belong to steps that are taken anew. Collective; stops with one line when the file cannot be renamed. */
@@ -45,17 +46,20 @@ PETSC_EXTERN void CheckpointClear(Folder *folder);
 
 /* CheckpointEntry - write or read n entries of `each` numbers, the same on every rank, as <group>/<name>; n = 0 does
    nothing. CheckpointVectors - write or read the vectors of one state of group j: 0 the present state, then those
-   before it. CheckpointMoveNumbers - write or read the numbers; what a run cannot have had is refused with a line that
-   names `restart`. When they read, an entry that is missing or has another size makes the file fail. Collective. */
+   before it. CheckpointTracers - write or read the tracers of the present state. CheckpointMoveNumbers - write or read
+   the numbers; what a run cannot have had is refused with a line that names `restart`. When they read, an entry that is
+   missing or has another size makes the file fail. Collective. */
 PETSC_EXTERN PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const char name[], PetscInt n, PetscInt each,
                                             PetscReal values[]);
 PETSC_EXTERN PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme scheme, PetscInt j, State *state);
+PETSC_EXTERN PetscErrorCode CheckpointTracers(H5File *file, PetscBool write, Scheme scheme, Tracers *tracers);
 PETSC_EXTERN PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *numbers);
 
-/* RestartRead - the state of -restart's checkpoint, the record and the number of scheduled frames as they were. Rank 0
-   checks the checksum, which covers every byte; then all ranks read. Numbers that a run cannot have had are refused.
-   Collective; stops with one line when the checkpoint is missing, damaged, of another format or of another scene. */
-PETSC_EXTERN PetscErrorCode RestartRead(Scheme scheme, Record *record, PetscInt *frames);
+/* RestartRead - the state of -restart's checkpoint, the record, the tracers and the number of scheduled frames as they
+   were. Rank 0 checks the checksum, which covers every byte; then all ranks read. Numbers that a run cannot have had
+   are refused. Collective; stops with one line when the checkpoint is missing, damaged, of another format or of another
+   scene. */
+PETSC_EXTERN PetscErrorCode RestartRead(Scheme scheme, Record *record, Tracers *tracers, PetscInt *frames);
 
 /* CheckpointChecksum - CRC-32 of a file up to its last `tail` bytes, which are copied to `end`; false when the file
    cannot be read or is shorter. Not collective. */

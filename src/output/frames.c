@@ -1,5 +1,6 @@
 #include "output/frames.h"
 #include "base/version.h"
+#include "output/cells.h"
 
 #define ABOUT                                                                                                          \
   "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the disturbance (without "    \
@@ -89,7 +90,7 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
   const Grid g = s->fluid->grid;
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0, moving = s->scene->obstacles.moving ? W : 0,
-                 n = g->n[0] * g->rows[FIELD_P];
+                 n = g->n[0] * g->rows[FIELD_P], tracers = f->tracers->n;
   const PetscBool single = s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
   const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single},
                                 {"/fluid/v", g->n[1], g->n[0], single},
@@ -100,14 +101,16 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
                                 {"/obstacle/force", W, 2},
                                 {"/obstacle/markers", moving, 2},
                                 {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2},
-                                {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2}};
+                                {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2},
+                                {"/tracers/points", tracers, 2},
+                                {"/tracers/wrapped", FramesAreWrapped(s) ? tracers : 0, 2}};
   AppendedKind kind = {.name = "run.h5", .entries = "frames", .scheme = s, .describe = FramesDescribe};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
     if (all[k].rows) kind.series[kind.n++] = all[k];
   f->scheme = s;
   PetscCall(PetscMalloc4(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2],
-                         PetscMax(2 * PetscMax(M, W), g->rank ? 0 : g->n[0] * g->n[1]), &f->all));
+                         PetscMax(2 * PetscMax(tracers, PetscMax(M, W)), g->rank ? 0 : g->n[0] * g->n[1]), &f->all));
   PetscCall(AppendedOpen(&f->file, folder, &kind, scheduled, restart));
   f->scheduled = f->file.count;
   if (f->scheduled) f->time = f->file.time[f->scheduled - 1];
@@ -172,6 +175,12 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
   if (wrapped && moving) {
     ObstaclesCurves(o, s->state.t, f->all);
     FramesWrap(s, PETSC_TRUE, f->all);
+    AppendedSet(file, k++, f->all);
+  }
+  if (f->tracers->n) AppendedSet(file, k++, f->tracers->X);
+  if (f->tracers->n && wrapped) {
+    PetscCall(PetscArraycpy(f->all, f->tracers->X, 2 * f->tracers->n));
+    for (PetscInt i = 0; i < f->tracers->n; i++) ShiftIntoBox(s->fluid->grid, 1, f->all + 2 * i, 1, f->all + 2 * i);
     AppendedSet(file, k, f->all);
   }
   PetscCall(AppendedFlush(file, PETSC_FALSE)); /* values before the time by which readers count them */

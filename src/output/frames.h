@@ -1,14 +1,16 @@
 /* run.h5: velocity and pressure at cell centres and the markers, at the saved times.
 
    run.h5 is an appended file whose entries are frames (appendedfile.h): three series of the fluid, three of the
-   vesicles where there are any, the force on obstacles where there are any, and their markers where they move. Each
-   rank sends its rows of the fluid's fields to rank 0; markers are on every rank. */
+   vesicles where there are any, the force on obstacles where there are any, their markers where they move, and tracers.
+   Each rank sends its rows of the fluid's fields to rank 0; markers are on every rank. */
 #pragma once
 #include "output/appendedfile.h"
 #include "output/gathered.h"
+#include "output/tracers.h"
 
 typedef struct {
-  Scheme scheme; /* borrowed */
+  const Tracers *tracers; /* borrowed, set before FramesOpen */
+  Scheme scheme;          /* borrowed */
   AppendedFile file;
   PetscInt scheduled;    /* frames at multiples of -output_every, the first included */
   PetscReal time;        /* time of the last frame */
@@ -29,13 +31,6 @@ PETSC_EXTERN PetscErrorCode FramesOpen(Frames *frames, Folder *folder, Scheme sc
    of -output_every, not only the end of this run. The next frame replaces a frame that is not scheduled, where a run
    goes on after its end. Collective; stops with one line when the frame cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, PetscBool scheduled);
-
-/* CellFields - velocity u, v, background included, and pressure p at cell centres, of the disturbance unless the form
-   is total. The velocity is the mean of the cell's faces and the background's; next to membranes the near field
-   corrects it. In unbounded fluid, where nothing is on the grid, the fields are those of the single layer of the
-   membranes, with no pressure far away. Arrays [rows][nx] of this rank's rows, NULL on every rank for a field that is
-   not wanted. Collective. */
-PETSC_EXTERN PetscErrorCode CellFields(Scheme scheme, PetscReal u[], PetscReal v[], PetscReal p[]);
 
 /* FramesClose - close the file and free everything. good: all of it was written, or a line has said that it was not;
    TRUE on ranks other than 0. Not collective. */

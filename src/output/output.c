@@ -46,12 +46,14 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   o->scene = scene;
   o->scheme = scheme;
   PetscCall(RecordCreate(scheme->membrane->layout->bodies, &scene->obstacles, scheme->coupling->forces, &o->record));
+  PetscCall(TracersCreate(scene, &o->tracers));
   PetscCall(FolderOpen(scene->comm, scene->output.dir, &o->folder));
-  if (*scene->output.restart) PetscCall(RestartRead(scheme, &o->record, &frames));
+  if (*scene->output.restart) PetscCall(RestartRead(scheme, &o->record, &o->tracers, &frames));
   PetscCall(FolderMake(&o->folder));
   PetscCall(FolderClaim(&o->folder, scene->output.restart, scene->output.overwrite, &o->go_on));
   o->checkpoint = (Checkpoint){.folder = &o->folder, .keep = scene->output.checkpoint_keep, .step = -1};
-  o->xdmf = (Xdmf){.folder = &o->folder, .scheme = scheme, .file = -1};
+  o->xdmf = (Xdmf){.folder = &o->folder, .scheme = scheme, .tracers = o->tracers.n, .file = -1};
+  o->frames.tracers = &o->tracers;
   PetscCall(OutputOpenFiles(o, frames));
   o->summary = (Summary){.folder = &o->folder, .scheme = scheme, .record = &o->record};
   PetscCall(SummaryBegin(&o->summary));
@@ -71,6 +73,7 @@ PetscErrorCode OutputDestroy(Output *output) {
   good[2] = XdmfClose(&o->xdmf);
   PetscCall(AppendedClose(&o->vesicles, &good[3]));
   PetscCall(RecordDestroy(&o->record));
+  PetscCall(TracersDestroy(&o->tracers));
   FolderRelease(&o->folder);
   folder = o->folder;
   PetscCall(PetscFree(o));
@@ -113,7 +116,7 @@ PetscErrorCode OutputCheckpoint(Output o) {
   PetscCall(SeriesFlush(&o->series, PETSC_TRUE));
   PetscCall(AppendedFlush(&o->frames.file, PETSC_TRUE));
   PetscCall(AppendedFlush(&o->vesicles, PETSC_TRUE));
-  PetscCall(CheckpointWrite(&o->checkpoint, o->scheme, &o->record, o->frames.scheduled));
+  PetscCall(CheckpointWrite(&o->checkpoint, o->scheme, &o->record, &o->tracers, o->frames.scheduled));
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
   o->checkpoint_seconds = PetscMax(o->checkpoint_seconds, end - start);
@@ -137,6 +140,7 @@ PetscErrorCode OutputStep(Output o) {
   const State *q = &o->scheme->state;
   const PetscInt every = o->scene->output.checkpoint_every;
   PetscFunctionBeginUser;
+  PetscCall(TracersMove(&o->tracers, o->scheme));
   PetscCall(OutputWriteRow(o));
   if (q->t >= o->next - 1e-9 * q->dt) {
     PetscCall(OutputWriteFrame(o, PETSC_TRUE));

@@ -11,6 +11,7 @@
 #include "output/frames.h"
 #include "output/series.h"
 #include "output/summary.h"
+#include "output/tracers.h"
 #include "output/vesiclefile.h"
 #include "output/xdmf.h"
 
@@ -22,6 +23,7 @@ struct _p_Output {
   Record record; /* the present state in numbers */
   Series series;
   AppendedFile vesicles; /* vesicles.h5; open where vesicles are many */
+  Tracers tracers;
   Frames frames;
   Xdmf xdmf;
   Checkpoint checkpoint;

@@ -181,7 +181,8 @@ static PetscErrorCode RestartState(Scheme s, H5File *file, SchemeTimes *times) {
 }
 
 /* Read all of the open checkpoint; memory[] is what the solvers have kept from earlier steps. */
-static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, PetscInt *frames, PetscReal memory[]) {
+static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Tracers *tracers, PetscInt *frames,
+                                     PetscReal memory[]) {
   const PetscInt numbers = SchemeMemorySize(s);
   CheckpointNumbers n = {.times.plan = {.order = 1, .guess = 1}}; /* allowed, where nothing can be read */
   PetscBool plain;
@@ -195,6 +196,7 @@ static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Pet
   PetscCall(RestartEntries(s->scene, file));
   PetscCall(RestartFiles(s->scene, file));
   PetscCall(RestartState(s, file, &n.times));
+  PetscCall(CheckpointTracers(file, PETSC_FALSE, s, tracers));
   *frames = n.frames;
   PetscCall(RestartRecord(s, file, n.totals, record));
   PetscCall(CheckpointEntry(file, PETSC_FALSE, "/solver", numbers, 1, memory));
@@ -204,7 +206,7 @@ static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RestartRead(Scheme s, Record *record, PetscInt *frames) {
+PetscErrorCode RestartRead(Scheme s, Record *record, Tracers *tracers, PetscInt *frames) {
   PetscReal *memory;
   PetscErrorCode error;
   H5File file;
@@ -212,7 +214,7 @@ PetscErrorCode RestartRead(Scheme s, Record *record, PetscInt *frames) {
   PetscCall(RestartFile(s->scene));
   PetscCall(PetscMalloc1(SchemeMemorySize(s), &memory));
   PetscCall(H5FileOpen(s->scene->comm, s->scene->output.restart, H5_READ, &file));
-  error = RestartReadAll(s, &file, record, frames, memory);
+  error = RestartReadAll(s, &file, record, tracers, frames, memory);
   H5FileClose(&file);
   if (!error) error = SchemeRecall(s, memory);
   PetscCall(PetscFree(memory));

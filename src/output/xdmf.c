@@ -114,7 +114,16 @@ static void PrintObstacles(FILE *f, PetscInt t, Obstacles o, PetscBool moving, P
   fprintf(f, "</Grid>\n");
 }
 
-static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time) {
+static void PrintTracers(FILE *f, PetscInt t, PetscInt n, PetscBool wrapped) {
+  const XdmfSlab points = {wrapped ? "/tracers/wrapped" : "/tracers/points", 8, t, n, 0, 2, 2};
+  fprintf(f, "<Grid Name=\"tracers\" GridType=\"Uniform\"><Topology TopologyType=\"Polyvertex\" ");
+  fprintf(f, "NumberOfElements=\"%d\"/>\n<Geometry GeometryType=\"XY\">\n", (int)n);
+  PrintSlab(f, "", &points);
+  fprintf(f, "</Geometry></Grid>\n");
+}
+
+static void PrintFrame(const Xdmf *x, FILE *f, PetscInt t, PetscReal time) {
+  const Scheme s = x->scheme;
   const Obstacles solids = s->coupling->bodies->obstacles;
   const PetscBool wrapped = FramesAreWrapped(s);
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
@@ -122,6 +131,7 @@ static void PrintFrame(Scheme s, FILE *f, PetscInt t, PetscReal time) {
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   if (s->membrane->layout->M) PrintVesicles(f, t, s->membrane->layout, wrapped);
   if (solids) PrintObstacles(f, t, solids, s->scene->obstacles.moving, wrapped);
+  if (x->tracers) PrintTracers(f, t, x->tracers, wrapped);
   fprintf(f, "</Grid>\n");
 }
 
@@ -169,7 +179,7 @@ static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time) {
   FILE *f = open_memstream(&text, &size);
   PetscBool done = PETSC_FALSE;
   if (!f) return PETSC_FALSE;
-  PrintFrame(x->scheme, f, frame, time);
+  PrintFrame(x, f, frame, time);
   fprintf(f, XDMF_CLOSING);
   if (!fclose(f)) {
     (void)snprintf(count, sizeof(count), "%*d", XDMF_COUNT_WIDTH, (int)frame + 1);

@@ -8,10 +8,11 @@
 #pragma once
 #include "output/appendedfile.h"
 
-/* Filled in by the caller: folder, scheme, file = -1; else zero. */
+/* Filled in by the caller: folder, scheme, number of tracers, file = -1; else zero. */
 typedef struct {
-  Folder *folder;  /* borrowed */
-  Scheme scheme;   /* borrowed */
+  Folder *folder; /* borrowed */
+  Scheme scheme;  /* borrowed */
+  PetscInt tracers;
   int file;        /* rank 0, when open; else -1 */
   PetscInt frames; /* in the document */
   off_t last;      /* where the last frame begins */

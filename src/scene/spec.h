@@ -77,6 +77,12 @@ typedef struct {
   PetscInt *wall; /* [curves] 2 direction + side of the wall that an open curve is on; -1 of other curves */
 } SceneObstacles;
 
+/* Passive points, src/output/tracers.h. */
+typedef struct {
+  char file[PETSC_MAX_PATH_LEN];
+  IntList grid; /* columns and rows */
+} SceneTracers;
+
 typedef struct {
   char kernel[OPTION_MAX_NAME]; /* between grid and markers */
   PetscInt near_field;          /* NearFieldType */
@@ -138,6 +144,7 @@ struct _p_Scene {
   SceneVesicles vesicles;
   SceneMembrane membrane;
   SceneObstacles obstacles;
+  SceneTracers tracers;
   SceneGravity gravity;
   SceneCoupling coupling;
   SceneRepulsion repulsion;

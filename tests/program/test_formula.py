@@ -55,7 +55,7 @@ def test_it_is_written_and_goes_on_after_a_restart(tmp_path):
     """resolved.opts repeats formulas with blanks, quotes' marks and a dash; a restart gives the bits of the whole run."""
     (tmp_path / "f.opts").write_text(
         "\n".join(f"-{line}" for line in SMALL[1:].split(" -"))
-        + '\n-flow_u "-y * exp(-t)"  # a comment\n-flow_v \'max(0, sin(3*t)) * x^2\'\n'
+        + "\n-flow_u \"-y * exp(-t)\"  # a comment\n-flow_v 'max(0, sin(3*t)) * x^2'\n"
     )
     file = ["-options_file", str(tmp_path / "f.opts")]
     done = mpirun([PETVES, *file, "-view", "-output_dir", str(tmp_path / "whole")], 1)

@@ -73,7 +73,7 @@ def draw_membranes(
 ) -> list[Artist]:
     """Draw the outlines coloured by tension over a wider line of one colour, of up to MANY vesicles smooth, the first one dotted.
 
-    Obstacles are areas in grey. Images across a periodic seam are there too.
+    Obstacles are areas in grey, tracers dots. Images across a periodic seam are there too.
 
     Returns
     -------
@@ -84,6 +84,9 @@ def draw_membranes(
 
     window, first = Window(run, frame, follow), Window(run, 0, follow)
     drawn: list[Artist] = draw_solids(axes, window)
+    if run.tracers.size:
+        style = dict(color="C1", markeredgecolor="black", markeredgewidth=0.3, markersize=2.5, zorder=OVER_STREAMS)
+        drawn += axes.plot(*window.tracers().T, "o", **style)
     few, smooth = run.vesicles <= MANY, run.vesicles < CROWD
     wide = 4.0 if few else 2.0 if smooth else 1.0
     below, segments, tensions = [], [], []

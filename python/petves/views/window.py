@@ -102,6 +102,14 @@ class Window:
         x0, x1, y0, y1 = self.limits + np.tile([-1.0, 1.0], 2) * np.ptp(self.limits)
         return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)]), *seen]
 
+    def tracers(self) -> np.ndarray:
+        """Return where the tracers are seen, shape (n, 2)."""
+        points = self.run.tracers[self.frame] - self.origin
+        for d, period in enumerate(self.run.periods):
+            if period:
+                points[:, d] = self.limits[2 * d] + (points[:, d] - self.limits[2 * d]) % period
+        return points
+
     def images(self, vesicle: int, frame: int | None = None, curve: bool = True) -> list[np.ndarray]:
         """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
         at = self.frame if frame is None else frame
