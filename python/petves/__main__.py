@@ -7,6 +7,7 @@ import io
 import os
 import sys
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from petves.errors import Error
@@ -98,6 +99,13 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     )
     grid.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time (one a core)")
     grid.add_argument("--ranks", type=int, default=1, help="MPI ranks of each run (1)")
+    grid.add_argument(
+        "--slurm",
+        nargs="?",
+        const="",
+        metavar="WORDS",
+        help="submit it as a job array, one run a task, with these words for sbatch",
+    )
 
 
 def _add_numbers(commands: argparse._SubParsersAction) -> None:
@@ -135,12 +143,11 @@ def _run(command: str, words: dict[str, Any]) -> list[object]:
         return [*lines, picture]
     if command == "sweep":
         words["grid"] = {option.lstrip("-"): values for option, *values in words.pop("vary")}
+        if words["slurm"] is not None:
+            del words["jobs"]
+            return [module.submit(**words)]
+        del words["slurm"]
     return [getattr(module, command)(**words)]
-
-
-def _left(command: str, lines: list[object]) -> list[str]:
-    """Return what of a sweep is not done."""
-    return import_module(HOME[command]).failures(lines[-1]) if command == "sweep" else []
 
 
 def _for_program(words: list[str]) -> bool:
@@ -172,7 +179,9 @@ def main(arguments: list[str] | None = None) -> int:
         lines = _run(command, words)
         for line in lines:
             print(line)
-        left = _left(command, lines)
+        left = (
+            import_module(HOME[command]).failures(lines[0]) if isinstance(lines[0], Path) and command == "sweep" else []
+        )
         for line in left:
             print(f"petves: error: {line}", file=sys.stderr)
         return 1 if left else 0

@@ -10,6 +10,9 @@ import io
 import itertools
 import json
 import re
+import shlex
+import subprocess
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
@@ -69,9 +72,7 @@ def sweep(
     Error
         When the grid is empty, the folder holds runs of other shared options, or a file of the sweep cannot be written.
     """
-    folder = Path(folder)
-    grid = {name: [str(value) for value in values] for name, values in grid.items()}
-    _check(grid, jobs, ranks)
+    folder, grid = Path(folder), _checked(grid, jobs, ranks)
     base = Path(options_file).read_text() if options_file and Path(options_file).is_file() else ""
     if options_file and not base:
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
@@ -96,6 +97,42 @@ def sweep(
             pool.shutdown(cancel_futures=True)  # what has been started still ends
             raise
     return _write(folder, grid, points, ended)
+
+
+def submit(
+    folder: str | Path,
+    grid: Mapping[str, Iterable[object]],
+    options_file: str | Path | None = None,
+    ranks: int = 1,
+    slurm: str = "",
+) -> str:
+    """Submit a grid as a job array of Slurm, one combination a task; return what sbatch answers.
+
+    `slurm` has further words for sbatch, the rest is as for `sweep`, which makes the table when the tasks have ended.
+    """
+    folder, points = Path(folder).resolve(), list(_points(_checked(grid, 1, ranks)))
+    task = [sys.executable, "-m", "petves", "sweep", str(folder), "--ranks", str(ranks), "--jobs", "1"]
+    task += ["--options-file", str(Path(options_file).resolve())] if options_file else []
+    varied = ([word for name, value in point.items() for word in ("--vary", name, value)] for point in points)
+    with _writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        _replace(folder / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
+    wrapped = f'eval "$(sed -n "$SLURM_ARRAY_TASK_ID p" {shlex.quote(str(folder / "tasks"))})"'
+    words = [
+        f"--array=1-{len(points)}",
+        f"--ntasks={ranks}",
+        "--job-name=petves",
+        *shlex.split(slurm),
+        "--wrap",
+        wrapped,
+    ]
+    try:
+        done = subprocess.run(["sbatch", *words], capture_output=True, text=True)
+    except FileNotFoundError:
+        raise Error("sbatch: no such program; allowed: --slurm where Slurm is") from None
+    if done.returncode:
+        raise Error(f"sbatch: {(done.stderr or done.stdout).strip()}")
+    return done.stdout.strip()
 
 
 def failures(path: str | Path) -> list[str]:
@@ -124,7 +161,9 @@ def _replace(path: Path, text: str) -> None:
         fresh.write_text(text, errors="surrogateescape")
 
 
-def _check(grid: dict[str, list[str]], jobs: int, ranks: int) -> None:
+def _checked(grid: Mapping[str, Iterable[object]], jobs: int, ranks: int) -> dict[str, list[str]]:
+    """Return a grid's values as text."""
+    grid = {name: [str(value) for value in values] for name, values in grid.items()}
     if not grid or not all(grid.values()):
         raise Error("sweep: nothing to vary; allowed: at least one option with values")
     for name in grid:
@@ -132,6 +171,7 @@ def _check(grid: dict[str, list[str]], jobs: int, ranks: int) -> None:
             raise Error(f"sweep: {name} cannot vary; allowed: any other option")
     if jobs < 1 or ranks < 1:
         raise Error(f"sweep: {jobs} jobs of {ranks} ranks; allowed: at least 1 each")
+    return grid
 
 
 def _name(point: dict[str, str]) -> str:

@@ -48,6 +48,31 @@ def script(path: Path, text: str) -> str:
     return str(path)
 
 
+SBATCH = """
+echo "$*" > "$0.words"
+for word in "$@"; do [[ $word = --array=1-* ]] && last=${word#--array=1-}; done
+for task in $(seq "$last"); do SLURM_ARRAY_TASK_ID=$task bash -c "${@: -1}" > "$0.$task" || exit; done
+echo "Submitted batch job 7"
+"""
+
+
+def test_job_array_runs_each_combination_once(sweep, tmp_path):
+    """A false sbatch runs the tasks one after the other; the same command then writes the table and runs nothing."""
+    sbatch = script(tmp_path / "sbatch", SBATCH)
+    values = ("fluid_viscosity", "1", "2", "--vary", "time_end", "0.02")
+    status, lines, _ = sweep(*values, "--slurm", "--time=1:00 --comment='a b'", path=f"{tmp_path}:")
+    assert status == 0 and not lines
+    words = (tmp_path / "sbatch.words").read_text()
+    assert words.startswith("--array=1-2 --ntasks=1 --job-name=petves --time=1:00 --comment=a b --wrap ")
+    status, lines, rows = sweep(*values, program=script(tmp_path / "none", "exit 1"))
+    assert status == 0 and [(row["fluid_viscosity"], row["status"], row["step"]) for row in rows] == [
+        ("1", "done", "1"),
+        ("2", "done", "1"),
+    ]
+    script(Path(sbatch), "echo no such partition >&2; exit 1")
+    assert sweep(*values, "--slurm", path=f"{tmp_path}:")[:2] == (1, ["petves: error: sbatch: no such partition"])
+
+
 def test_full_disk_deletes_nothing_and_goes_on(sweep, tmp_path):
     """No file grows beyond a size that the runs reach after some steps: each keeps its checkpoint and its rows. The next
     call goes on from there, to the rows of runs that had room."""

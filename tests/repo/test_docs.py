@@ -92,7 +92,9 @@ def in_browser(address: str) -> str:
     return subprocess.run([CHROMIUM, *words, address], capture_output=True, text=True, timeout=60).stdout
 
 
-@pytest.mark.skipif(not (PROGRAMS.parent / "site-tools" / "mkdocs").is_dir(), reason="MkDocs could not be installed from PyPI")
+@pytest.mark.skipif(
+    not (PROGRAMS.parent / "site-tools" / "mkdocs").is_dir(), reason="MkDocs could not be installed from PyPI"
+)
 def test_site_is_whole_and_needs_no_network():
     """README with its pictures, notebooks, tables, docstrings; in a browser equations and the search, from files."""
     done = subprocess.run(["make", "-C", ROOT, "docs", f"BUILD={PROGRAMS.parent}"], capture_output=True, text=True)
