@@ -6,16 +6,13 @@ import argparse
 import io
 import os
 import sys
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import petves
+from petves import laboratory, sweeps
 from petves.errors import Error
-from petves.program import become, scene_file
-
-HOME = {name: f"petves.views.{name}" for name in ("plot", "movie", "watch", "report", "compare")}
-HOME |= {"sweep": "petves.sweeps", "numbers": "petves.laboratory", "scenes": "petves.program"}
-"""The module of each command, imported when the command is run."""
+from petves.program import become, scene_file, scenes
 
 
 def parser() -> argparse.ArgumentParser:
@@ -53,10 +50,16 @@ def _add_pictures(commands: argparse._SubParsersAction) -> None:
     plot.add_argument(
         "--time", type=float, help="field and tension, or what is asked for, at the saved time nearest to it"
     )
-    plot.add_argument("--column", nargs="+", default=[], metavar="NAME", help="columns of series.csv over time")
-    plot.add_argument("--field", nargs="+", default=[], metavar="NAME", help="membranes over fields: vorticity, ...")
+    plot.add_argument(
+        "--column", dest="columns", nargs="+", default=[], metavar="NAME", help="columns of series.csv over time"
+    )
+    plot.add_argument(
+        "--field", dest="fields", nargs="+", default=[], metavar="NAME", help="membranes over fields: vorticity, ..."
+    )
     points = dict(nargs=2, type=float, action="append", default=[], metavar=("X", "Y"))
-    plot.add_argument("--point", **points, help="u, v, p at a point over time; again for each further point")
+    plot.add_argument(
+        "--point", dest="points", **points, help="u, v, p at a point over time; again for each further point"
+    )
     plot.add_argument("--line", nargs=4, type=float, metavar=("X", "Y", "X", "Y"), help="u, v, p along a line")
     plot.add_argument("--walls", action="store_true", help="the shear stress along the walls")
     _add_look(plot, "format", "dpi", "width", "cmap", "follow")
@@ -125,34 +128,25 @@ def _add_numbers(commands: argparse._SubParsersAction) -> None:
 
 def _run(command: str, words: dict[str, Any]) -> list[object]:
     """Run one command with its arguments; return the lines to print."""
-    module = import_module(HOME[command])
     if command in ("plot", "movie"):
+        from petves.views.figures import Look
+
         own = ("format", "dpi", "width", "cmap", "follow") if command == "plot" else ("cmap", "follow")
-        look = import_module("petves.views.figures").Look
-        words["look"] = look(**{name: words.pop(name) for name in own})
-    if command == "plot":
-        for name in ("column", "field", "point"):
-            words[f"{name}s"] = words.pop(name)
-        return module.plot_run(**words)
+        words["look"] = Look(**{name: words.pop(name) for name in own})
     if command == "scenes":
-        return module.scenes()
+        return scenes()
     if command == "numbers":
-        return module.lines(**{name: value for name, value in words.items() if value is not None})
-    if command == "compare":
-        lines, picture = module.compare(**words)
-        return [*lines, picture]
+        return laboratory.lines(**{name: value for name, value in words.items() if value is not None})
     if command == "sweep":
         words["grid"] = {option.lstrip("-"): values for option, *values in words.pop("vary")}
         if words["slurm"] is not None:
             del words["jobs"]
-            return [module.submit(**words)]
+            return [sweeps.submit(**words)]
         del words["slurm"]
-    return [getattr(module, command)(**words)]
-
-
-def _for_program(words: list[str]) -> bool:
-    """Return whether the words are the program's own: run, or an option that begins with one dash."""
-    return bool(words) and (words[0] == "run" or (words[0].startswith("-") and words[0] not in ("-h", "--help")))
+    found = getattr(petves, command)(**words)
+    if command == "compare":
+        return [*found[0], found[1]]
+    return found if isinstance(found, list) else [found]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -170,7 +164,8 @@ def main(arguments: list[str] | None = None) -> int:
     """
     given = sys.argv[1:] if arguments is None else arguments
     try:
-        if _for_program(given):
+        first = given[0] if given else ""
+        if first == "run" or (first.startswith("-") and first not in ("-h", "--help")):  # the program's own words
             return become([*given[:1], *map(scene_file, given[1:2]), *given[2:]])
         words = vars(parser().parse_args(given))
         command = words.pop("command")
@@ -179,9 +174,7 @@ def main(arguments: list[str] | None = None) -> int:
         lines = _run(command, words)
         for line in lines:
             print(line)
-        left = (
-            import_module(HOME[command]).failures(lines[0]) if isinstance(lines[0], Path) and command == "sweep" else []
-        )
+        left = sweeps.failures(lines[0]) if command == "sweep" and isinstance(lines[0], Path) else []
         for line in left:
             print(f"petves: error: {line}", file=sys.stderr)
         return 1 if left else 0

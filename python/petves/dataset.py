@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _HAVE = {
     "1": "viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
-    "time": "time dt",
+    "time": "time dt step_time",
     "length": "gap length center_x center_y area_shift markers tracers obstacles obstacle_center_x obstacle_center_y x y h",
     "length^2": "area",
     "length/time": "u v velocity normal_speed velocity_x velocity_y",
@@ -101,10 +101,10 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     }
     coordinates = {
         "step": run.series["step"].astype(int),
-        "step_time": ("step", run.series["time"], {"units": "time"}),
-        "time": ("time", run.time, {"units": "time"}),
-        "x": ("x", x, {"units": "length"}),
-        "y": ("y", y, {"units": "length"}),
+        "step_time": ("step", run.series["time"]),
+        "time": run.time,
+        "x": x,
+        "y": y,
         "xy": ["x", "y"],
         "vesicle": ("marker", vesicle),
     }
@@ -112,8 +112,7 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
         coordinates["member"] = np.arange(1, run.vesicles + 1)
     attributes = {"h": run.h, "nu": run.nu, "c_b": run.c_b, "box": run.box, "folder": str(run.folder)}
     attributes["periodic"] = "".join(name for name, period in zip("xy", run.periods) if period)
-    attributes["walls"] = run.walls
-    attributes["reason"] = run.summary.get("reason", "")
+    attributes |= {"walls": run.walls, "reason": run.summary.get("reason", "")}
     if run.tracers.size:
         variables["tracers"] = ("time", "tracer", "xy"), run.tracers
     if run.obstacles:
@@ -123,5 +122,7 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
         variables["obstacle_force"] = (("time", "obstacle_marker", "xy"), run.obstacle_force)
         sizes = [len(points) for points in run.obstacles]
         coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(1, len(sizes) + 1), sizes))
-    data = xarray.Dataset({k: (*v, {"units": unit(k)}) for k, v in variables.items()}, coordinates, attributes)
+    data = xarray.Dataset(variables, coordinates, attributes)
+    for name, variable in data.variables.items():
+        variable.attrs["units"] = unit(name)
     return data

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import sys
 from typing import Any, Callable, Iterator
 
 
@@ -11,30 +10,16 @@ from typing import Any, Callable, Iterator
 def progress_bar(
     end: float, begin: float = 0.0, show: bool | None = None, unit: str = ""
 ) -> Iterator[Callable[[float], Any]]:
-    """Show how far a quantity has come on its way to `end`, on standard error.
+    """Show how far a quantity has come from `begin` to `end`, on standard error: ``bar(value)`` moves it.
 
-    Parameters
-    ----------
-    end, begin : float
-        Where it goes and where it starts.
-    show : bool, optional
-        Whether to; when left out, if standard error is a terminal.
-    unit : str
-        What is counted: "" for time.
-
-    Yields
-    ------
-    callable
-        ``bar(value)`` moves it.
+    Without `show` it is shown if standard error is a terminal. `unit` is what is counted, "" for time.
     """
     try:
         from tqdm import tqdm
     except ImportError:
-        tqdm = None
-    shown = sys.stderr.isatty() if show is None else show
-    if tqdm is None or not shown or end <= begin:
         yield lambda value: None
         return
     layout = "{l_bar}{bar}| {n:.4g}/{total:.4g}" + (f" {unit}" if unit else "") + " [{elapsed}<{remaining}]"
-    with tqdm(total=end, initial=begin, file=sys.stderr, bar_format=layout) as bar:
-        yield lambda value: bar.update(value - bar.n)
+    hidden = end <= begin or (None if show is None else not show)  # None: unless it is a terminal
+    with tqdm(total=end, initial=begin, bar_format=layout, disable=hidden) as bar:
+        yield (lambda value: None) if bar.disable else (lambda value: bar.update(value - bar.n))

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
-SIDES = {"bottom": ("u", -2, 1), "top": ("u", -2, -1), "left": ("v", -1, 1), "right": ("v", -1, -1)}
-"""Of each side: the velocity along it, the axis across it, and the step of cells away from it."""
+SIDES = {"bottom": ("u", "y", 0), "top": ("u", "y", -1), "left": ("v", "x", 0), "right": ("v", "x", -1)}
+"""Of each side: the velocity along it, the direction across it, and its cell."""
 
 
 def vorticity_of(u: np.ndarray, v: np.ndarray, h: float, periodic: Sequence[bool]) -> np.ndarray:
@@ -38,15 +38,6 @@ def stream_function_of(u: np.ndarray, v: np.ndarray, h: float) -> np.ndarray:
     along = np.zeros_like(v[..., 0, :])
     along[..., 1:] = np.cumsum(0.5 * h * (v[..., 0, 1:] + v[..., 0, :-1]), axis=-1)
     return across - along[..., None, :]
-
-
-def wall_shear_of(along: np.ndarray, h: float, nu: float, axis: int, step: int) -> np.ndarray:
-    """Return nu times the derivative away from a wall of the velocity along it, by its three next cells.
-
-    The parabola through the values f_0, f_1, f_2 at h/2, 3 h/2 and 5 h/2 has the slope (-2 f_0 + 3 f_1 - f_2)/h at 0.
-    """
-    cells = [np.take(along, k if step > 0 else -1 - k, axis=axis) for k in range(3)]
-    return nu * (-2 * cells[0] + 3 * cells[1] - cells[2]) / h
 
 
 def interpolate_of(
@@ -83,16 +74,17 @@ def wall_shear_stress(data: xarray.Dataset) -> xarray.Dataset:
     """Return the shear stress of the data on each wall of the box (length^2/time^2, for a density of 1).
 
     It is nu times the derivative of the velocity along the wall by the distance from it: bottom and top, dimensions
-    (time, x), and left and right, (time, y), where they are walls.
+    (time, x), and left and right, (time, y), where they are walls. The parabola through the values f_0, f_1, f_2 of the
+    next cells, at h/2, 3 h/2 and 5 h/2, has the slope (-2 f_0 + 3 f_1 - f_2)/h at the wall.
     """
     import xarray
 
-    sides = {}
-    for side, (name, axis, step) in SIDES.items():
-        if "yx"[axis + 2] not in data.attrs["walls"]:
-            continue
-        make = lambda one: wall_shear_of(one[name].values, data.attrs["h"], data.attrs["nu"], axis, step)
-        sides[side] = _array(data, "wall_shear_stress", make, ("x" if axis == -2 else "y",))
+    sides, h, nu = {}, data.attrs["h"], data.attrs["nu"]
+    for side, (name, across, cell) in SIDES.items():
+        if across in data.attrs["walls"]:
+            near = [data[name].isel({across: cell - k if cell else k}, drop=True) for k in range(3)]
+            stress = nu * (-2 * near[0] + 3 * near[1] - near[2]) / h
+            sides[side] = stress.assign_attrs(units=unit("wall_shear_stress"))
     return xarray.Dataset(sides)
 
 

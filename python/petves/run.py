@@ -171,29 +171,14 @@ class Run:
         """The directions that walls bound: "x", "y", "xy" or ""."""
         return "".join(c for c in "xy" if self._in_force.get(f"domain_bc_{c}", "wall") == "wall")
 
-    def images(
-        self,
-        frame: int,
-        vesicle: int = 0,
-        curve: bool = False,
-        limits: np.ndarray | None = None,
-        origin: np.ndarray | None = None,
-    ) -> list[np.ndarray]:
-        """Return one vesicle's outline at a saved time with every image of it that reaches into the box.
-
-        Markers are not wrapped: a vesicle that has left a periodic box goes on outside of it. Here it is in the box, and once
-        more at the other side where it lies across the seam. Each outline has shape (n + 1, 2): the markers, or with `curve`
-        the smooth curve through them. `limits` (4,) stand in place of the box, `origin` (2,) is taken off all places.
-        """
-        outline = self.curve(frame, vesicle) if curve else self.outline(frame, vesicle)
-        return self.images_of(outline, limits, origin)
-
     def images_of(
         self, outline: np.ndarray, limits: np.ndarray | None = None, origin: np.ndarray | None = None
     ) -> list[np.ndarray]:
         """Return every image of the closed `outline`, shape (n + 1, 2), that reaches into the box.
 
-        `limits` and `origin` are those of `images`.
+        Markers are not wrapped: a vesicle that has left a periodic box goes on outside of it. Here it is in the box, and once
+        more at the other side where it lies across the seam. `limits` (4,) stand in place of the box, `origin` (2,) is taken
+        off all places.
         """
         if origin is not None:
             outline = outline - origin
@@ -224,10 +209,6 @@ class Run:
         lines = read_file(path, lambda x: x.read_text(errors="replace")).splitlines() if path.exists() else []
         words = [line[1:].split(" ", maxsplit=1) for line in lines if line.startswith("-")]
         return {word[0]: word[1].strip('"') if len(word) > 1 else "" for word in words}
-
-    def first_measures(self, vesicle: int = 0) -> tuple[float, float]:
-        """Return a vesicle's initial area and length."""
-        return tuple(float(self.each(name)[0, vesicle]) for name in ("area", "length"))
 
     def fields(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return u, v, p at cell centres at a saved time, each of shape (ny, nx)."""
@@ -296,9 +277,7 @@ class Run:
 
         A curve that is not closed goes on along its wall, or along the next one or the side of the box on its left.
         """
-        # files of earlier programs have closed ones only
-        kinds = self.obstacle_kinds or ["closed"] * len(self.obstacles)
-        return solid_outline(self.obstacles_at(frame), kinds, obstacle, self.box, CURVE)
+        return solid_outline(self.obstacles_at(frame), self.obstacle_kinds, obstacle, self.box, CURVE)
 
     def curve_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the tension between the points of `curve`, shape (CURVE n,), by its Fourier series."""
@@ -309,10 +288,6 @@ class Run:
     def centroid(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the centroid of the area of one vesicle at a saved time (length), shape (2,)."""
         return centroid(self.outline(frame, vesicle))
-
-    def at(self, frame: int, column: str, vesicle: int = 0) -> float:
-        """Return a vesicle's column ("velocity_x") at a saved time; NaN where series.csv has no such row yet."""
-        return self.at_step(frame, self.each(column)[:, vesicle])
 
     def at_step(self, frame: int, values: np.ndarray) -> float:
         """Return the one of values, a step each, that is of a saved time."""

@@ -25,14 +25,15 @@ def read_series(path: str | Path) -> dict[str, np.ndarray]:
 
 
 def _series(path: Path) -> dict[str, np.ndarray]:
-    text = path.read_text()
-    names, *rows = [line.split(",") for line in text[: text.rfind("\n") + 1].split("\n")[:-1]] or [[]]
-    if rows and len(rows[-1]) != len(names):
+    names, *rows = path.read_text().split("\n")[:-1] or [""]  # a last row without an end is not whole
+    if rows and rows[-1].count(",") != names.count(","):
         rows.pop()
     if not rows:
         raise RunError(f"{path}: no steps in it")
-    table = np.array([[float(x) if x else np.nan for x in row] for row in rows])
-    series = {name: table[:, k] for k, name in enumerate(names)}
+    table = np.loadtxt(
+        rows, delimiter=",", ndmin=2, comments=None, encoding=None, converters=lambda x: float(x or "nan")
+    )
+    series = dict(zip(names.split(","), table.T, strict=True))
     _need(all(np.isfinite(series[name]).all() for name in ("step", "time") if name in series), "no step or time")
     return series
 
@@ -125,7 +126,7 @@ def _obstacles(file: h5py.File, rows: Callable[..., np.ndarray]) -> dict[str, An
         "obstacles": np.split(places, first[1:-1]),
         "obstacle_markers": moving,
         "obstacle_force": rows("obstacle/force", first[-1], 2),
-        "obstacle_kinds": [KINDS[kind] for kind in np.atleast_1d(file.attrs.get("obstacle_kind", []))],
+        "obstacle_kinds": [KINDS[kind] for kind in np.atleast_1d(file.attrs["obstacle_kind"])],
     }
 
 

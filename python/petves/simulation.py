@@ -86,7 +86,7 @@ class Simulation(State):
         self._inside = False
         self._quiet = quiet
         self._ended = True  # nothing to write yet
-        self._temporary = False
+        self._temporary: Path | None = None  # folder
         self._failed: list[BaseException] = []  # by the flow
         self._rows: list[bytes] = []
         self._gathered: dict[str, np.ndarray] = {}
@@ -144,8 +144,7 @@ class Simulation(State):
         if not has.value:
             path = ctypes.create_string_buffer(MAX_PATH)
             self._call("PetvesTemporaryFolder", comm, path)
-            self._temporary_folder = Path(os.fsdecode(path.value))
-            self._temporary = True
+            self._temporary = Path(os.fsdecode(path.value))
             self._call("PetscOptionsSetValue", self._options, b"-output_dir", path.value)
 
     def _learn(self) -> None:
@@ -374,7 +373,7 @@ class Simulation(State):
                 if self._options:
                     self._lib.PetscOptionsDestroy(ctypes.byref(self._options))
                 if self._temporary and self._comm.getRank() == 0:
-                    shutil.rmtree(self._temporary_folder, ignore_errors=True)
+                    shutil.rmtree(self._temporary, ignore_errors=True)
                 _alive.pop(id(self), None)
 
     def __enter__(self) -> Simulation:

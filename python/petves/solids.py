@@ -8,21 +8,14 @@ from petves.curves import smooth_curve, trigonometric
 
 KINDS = ("closed", "spanning", "open")  # as run.h5 numbers them
 FARTHEST = 6  # spacings between the last marker of an open curve and its wall
-ORDER = 6  # markers of a polynomial between the markers of an open curve
 
 
 def open_curve(points: np.ndarray, fold: int) -> np.ndarray:
-    """Return points (fold (n - 1) + 1, 2) on the open curve through n points, of polynomials through six of them."""
-    n = len(points)
-    at = np.arange(fold * (n - 1) + 1) / fold
-    first = np.clip(np.floor(at).astype(int) - ORDER // 2 + 1, 0, max(n - ORDER, 0))
-    nodes = np.arange(min(ORDER, n))
-    result = np.zeros((len(at), 2))
-    for i in nodes:
-        others = nodes[nodes != i]
-        weight = np.prod(((at - first)[:, None] - others) / (i - others), axis=1)
-        result += weight[:, None] * points[first + i]
-    return result
+    """Return points (fold (n - 1) + 1, 2) on the open curve through n points: a sine series about its chord."""
+    chord, count = np.linspace(points[0], points[-1], len(points)), fold * (len(points) - 1)
+    away = points - chord
+    around = np.vstack([away, -away[-2:0:-1]])
+    return trigonometric(around, 2 * count)[: count + 1] + np.linspace(points[0], points[-1], count + 1)
 
 
 def _to_wall(three: np.ndarray, axis: int, wall: float, fold: int) -> np.ndarray:

@@ -78,13 +78,11 @@ def sweep(
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
     command()
     points = list({_name(point): point for point in _points(grid)}.values())
-    with _writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        shared = folder / "shared.opts"
-        if not shared.is_file():
-            _replace(shared, base)
-        elif shared.read_text() != base:
-            raise Error(f"{folder}: holds a sweep with other shared options, see {shared}; choose another folder")
+    shared = _made(folder) / "shared.opts"
+    if not shared.is_file():
+        _replace(shared, base)
+    elif shared.read_text() != base:
+        raise Error(f"{folder}: holds a sweep with other shared options, see {shared}; choose another folder")
     ended: dict[str, Ended] = {}
     with ThreadPoolExecutor(jobs) as pool, progress_bar(len(points), show=progress, unit="runs") as bar:
         waiting: dict[Future[Ended], str] = {pool.submit(_run_point, folder, x, ranks): _name(x) for x in points}
@@ -108,15 +106,14 @@ def submit(
 ) -> str:
     """Submit a grid as a job array of Slurm, one combination a task; return what sbatch answers.
 
-    `slurm` has further words for sbatch, the rest is as for `sweep`, which makes the table when the tasks have ended.
+    `slurm` has further words for sbatch; `folder`, `grid`, `options_file` and `ranks` are as for `sweep`, which makes the
+    table when the tasks have ended.
     """
     folder, points = Path(folder).resolve(), list(_points(_checked(grid, 1, ranks)))
     task = [sys.executable, "-m", "petves", "sweep", str(folder), "--ranks", str(ranks), "--jobs", "1"]
     task += ["--options-file", str(Path(options_file).resolve())] if options_file else []
     varied = ([word for name, value in point.items() for word in ("--vary", name, value)] for point in points)
-    with _writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        _replace(folder / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
+    _replace(_made(folder) / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
     wrapped = f'eval "$(sed -n "$SLURM_ARRAY_TASK_ID p" {shlex.quote(str(folder / "tasks"))})"'
     words = [
         f"--array=1-{len(points)}",
@@ -147,12 +144,13 @@ def _points(grid: dict[str, list[str]]) -> Iterator[dict[str, str]]:
         yield dict(zip(grid, values))
 
 
-@contextlib.contextmanager
-def _writing(path: Path) -> Iterator[None]:
+def _made(folder: Path) -> Path:
+    """Return a folder that is there."""
     try:
-        yield
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise Error(f"{path}: cannot be written ({error.strerror}); allowed: a folder with space") from None
+        raise Error(f"{folder}: cannot be written ({error.strerror}); allowed: a folder with space") from None
+    return folder
 
 
 def _replace(path: Path, text: str) -> None:
@@ -258,6 +256,5 @@ def _write(folder: Path, grid: dict[str, list[str]], points: list[dict[str, str]
     writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
-    with _writing(folder / "sweep.csv"):
-        _replace(folder / "sweep.csv", text.getvalue())
+    _replace(folder / "sweep.csv", text.getvalue())
     return folder / "sweep.csv"

@@ -129,7 +129,7 @@ def test_images_are_cut_at_the_seam(tmp_path):
     run = Files.read(
         run_petves(tmp_path, "-domain_bc_x periodic -vesicle_semi_axes .2,.3 -vesicle_center 4.95,0 -time_end 0").folder
     )
-    left, right = sorted(run.images(0), key=lambda points: points[:, 0].mean())
+    left, right = sorted(run.images_of(run.outline(0)), key=lambda points: points[:, 0].mean())
     assert left[:, 0].mean() == pytest.approx(-1.05, abs=1e-2) and right[:, 0].mean() == pytest.approx(0.95, abs=1e-2)
     whole_box = {path.name for path in plot_run(tmp_path)}
     assert whole_box >= {"field.png", "shapes.png", "tension.png"}
@@ -159,7 +159,7 @@ def test_many_are_drawn_in_the_colour_of_their_kind(whole, tmp_path):
     run = Files.read(whole)
     _, (axes,) = new_figure(4, 3)
     drawn = draw_members(axes, run, -1)
-    assert len(drawn.get_paths()) == sum(len(run.images(-1, v)) for v in range(42)) >= 42
+    assert len(drawn.get_paths()) == sum(len(run.images_of(run.outline(-1, v))) for v in range(42)) >= 42
     assert len(np.unique(drawn.get_facecolors(), axis=0)) == 1 and axes.get_legend() is None
     assert scene_in_words(run)[1].startswith("42 vesicles") and "markers each" in scene_in_words(run)[1]
     assert report(whole, tmp_path / "page.html").stat().st_size > 1e5

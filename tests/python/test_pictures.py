@@ -78,7 +78,9 @@ def test_solids_are_filled(follow, run):
     inner, outer = circle(0.3), circle(0.8)[::-1]
     places = {3.9: True, 0.1: True, 0.4: False, 3.3: False, 2.0: True}
     for obstacles, around in (([inner, outer], True), ([inner], False), ([], None)):
-        window = Window(dataclasses.replace(run, obstacles=obstacles), -1, follow)
+        window = Window(
+            dataclasses.replace(run, obstacles=obstacles, obstacle_kinds=["closed"] * len(obstacles)), -1, follow
+        )
         figure, (axes,) = new_figure(8, 4)
         axes.set(xlim=window.limits[:2], ylim=window.limits[2:])
         draw_solids(axes, window)

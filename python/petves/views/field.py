@@ -116,8 +116,7 @@ def draw_solids(axes: Axes, window: Window) -> list[Artist]:
     curves = window.solids()
     if not curves:
         return []
-    codes = [[Outline.MOVETO] + [Outline.LINETO] * (len(points) - 2) + [Outline.CLOSEPOLY] for points in curves]
-    path = Outline(np.concatenate(curves), np.concatenate(codes))
+    path = Outline.make_compound_path(*(Outline(points, closed=True) for points in curves))
     return [axes.add_patch(PathPatch(path, facecolor=SOLID, edgecolor="black", lw=0.8, zorder=OVER_STREAMS))]
 
 

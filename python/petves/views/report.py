@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import base64
 import dataclasses
-import html
 import json
 import re
 import tempfile
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -54,25 +54,21 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     run = Run.read(folder)
     options = run.options()
     told = read_file(run.folder / "resolved.opts", lambda _: (key_numbers(run), scene_in_words(run)))
-    rows = "".join(f"<tr><td>{_safe(name)}</td><td>{_safe(value)}</td></tr>" for name, value in told[0])
-    words = "".join(f"<p>{_safe(text)}</p>" for text in told[1])
+    rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in told[0])
+    words = "".join(f"<p>{escape(text)}</p>" for text in told[1])
     parts = {
-        "TITLE": _safe(f"petves: {shown(run.folder.resolve().name)}"),
+        "TITLE": escape(f"petves: {shown(run.folder.resolve().name)}"),
         "WORDS": words,
         "NUMBERS": rows,
         "NOTE": _note(run),
         "PLOTS": _plots(run),
-        "OPTIONS": _safe("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
+        "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
     }
     path = Path(output) if output else run.folder / "report.html"
     with writing(path) as fresh:
         fresh.write_text(filled("report.html", parts), encoding="utf-8")
     return path
-
-
-def _safe(text: str) -> str:
-    return html.escape(text)
 
 
 def _note(run: Run) -> str:
@@ -94,8 +90,8 @@ def _plots(run: Run) -> str:
                 continue
             picture = base64.b64encode(draw(elsewhere).read_bytes()).decode()
             figures.append(
-                f'<figure><img alt="{_safe(caption)}" src="data:image/png;base64,{picture}">'
-                f"<figcaption>{_safe(caption)}</figcaption></figure>"
+                f'<figure><img alt="{escape(caption)}" src="data:image/png;base64,{picture}">'
+                f"<figcaption>{escape(caption)}</figcaption></figure>"
             )
     return "\n".join(figures)
 

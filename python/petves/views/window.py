@@ -38,7 +38,8 @@ class Window:
         for d, period in enumerate(run.periods):
             if period:
                 self.origin[d] = center[d]
-                self.velocity[d] = np.nan_to_num(run.at(frame, f"velocity_{'xy'[d]}", follow - 1))
+                speeds = run.each(f"velocity_{'xy'[d]}")[:, follow - 1]
+                self.velocity[d] = np.nan_to_num(run.at_step(frame, speeds))
                 self.limits[2 * d : 2 * d + 2] = -period / 2, period / 2
 
     @property
@@ -112,8 +113,8 @@ class Window:
 
     def images(self, vesicle: int, frame: int | None = None, curve: bool = True) -> list[np.ndarray]:
         """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
-        at = self.frame if frame is None else frame
-        return self.run.images(at, vesicle, curve, self.limits, self.origin)
+        outline = (self.run.curve if curve else self.run.outline)(self.frame if frame is None else frame, vesicle)
+        return self.run.images_of(outline, self.limits, self.origin)
 
 
 def _turns_left(curve: np.ndarray) -> bool:

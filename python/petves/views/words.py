@@ -6,9 +6,9 @@ import numpy as np
 
 from petves.run import Run
 from petves.views.curves import columns_of
+from petves.views.figures import MANY
 
 DRIVE = ("pressure_drop", "flux", "viscosity")  # columns of channels
-MANY = 8  # vesicles above which they are told of together
 FLOWS = {
     "quiescent": "There is no background flow",
     "shear": "The background is a shear flow of rate {flow_rate}",
@@ -44,7 +44,7 @@ def _solids(run: Run, o: dict[str, str]) -> str:
     if not run.obstacles:
         return ""
     names = {"closed": "closed", "open": "on a wall", "spanning": "across a period"}
-    kinds = " or ".join(dict.fromkeys(names[kind] for kind in run.obstacle_kinds or ["closed"]))
+    kinds = " or ".join(dict.fromkeys(names[kind] for kind in run.obstacle_kinds))
     moving = " They move and turn as prescribed." if o.get("obstacle_moving") == "true" else ""
     kept = {"flux": " The flux through the box is kept.", "pressure": " The mean pressure gradient is kept."}
     return f"Solid bodies: {len(run.obstacles)}, {kinds}.{moving}" + (
@@ -72,8 +72,7 @@ def _vesicles(run: Run, o: dict[str, str]) -> str:
     if run.vesicles > MANY:
         return f"{count} with an inextensible membrane{_ranges(run)}."
     shapes = []
-    for v in range(run.vesicles):
-        n, (area, length) = run.start[v + 1] - run.start[v], run.first_measures(v)
+    for area, length, n in zip(run.each("area")[0], run.each("length")[0], np.diff(run.start)):
         shapes.append(f"area {area:.4g}, length {length:.4g}, reduced area {4*np.pi*area/length**2:.3f}, {n} markers")
     bending = f"bending stiffness {run.c_b:g}" if run.c_b > 0 else "no bending stiffness"
     return f"{count} with an inextensible membrane and {bending}: {'; '.join(shapes)}."
@@ -108,7 +107,7 @@ def key_numbers(run: Run) -> list[tuple[str, str]]:
     total = sum(run.energies().values())
     rows.append(("energy, first and last", f"{total[0]:.4g}, {total[-1]:.4g}"))
     if run.vesicles:
-        rows += _sizes(run) + (_motion(run) if run.vesicles == 1 else _motions(run)) + _losses(run)
+        rows += _sizes(run) + _motions(run) + _losses(run)
     rows += _forces(run)
     rows.append(("largest |div u| left", f"{s['div_max'].max():.1e}"))
     rows.append(("iterations a step", ", ".join(_iterations(s))))
@@ -148,21 +147,14 @@ def _sizes(run: Run) -> list[tuple[str, str]]:
     return rows
 
 
-def _motion(run: Run) -> list[tuple[str, str]]:
-    angle, frequency = (run.series[name][-1] for name in ("inclination", "frequency"))
-    return [
-        ("last inclination", f"{angle:.4f} rad = {np.degrees(angle):.2f}°"),
-        ("last tank-treading frequency", f"{frequency:.4g}" if np.isfinite(frequency) else ""),
-    ]
-
-
 def _motions(run: Run) -> list[tuple[str, str]]:
-    """Return how several vesicles lie at the end: the mean axis, how well they agree with it, and frequencies."""
+    """Return how vesicles lie at the end: of several the mean axis and how well they agree with it; and frequencies."""
     turned = np.mean(np.exp(2j * run.each("inclination")[-1]))
+    angle, one = np.angle(turned) / 2, run.vesicles == 1
     return [
-        ("last mean axis", f"{np.degrees(np.angle(turned) / 2):.2f}°"),
-        ("last order |<exp(2 i inclination)>|", f"{abs(turned):.3f}"),
-        ("last tank-treading frequencies", _span(run.each("frequency")[-1], ".3g")),
+        (f"last {'inclination' if one else 'mean axis'}", f"{angle:.4f} rad = {np.degrees(angle):.2f}°"),
+        ("last order |<exp(2 i inclination)>|", "" if one else f"{abs(turned):.3f}"),
+        ("last tank-treading frequency", _span(run.each("frequency")[-1])),
     ]
 
 
