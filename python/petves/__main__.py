@@ -24,8 +24,6 @@ def parser() -> argparse.ArgumentParser:
     commands.add_parser("run", help="run a scene: run SCENE.opts -option value ...; run -help, run -help options")
     _add_pictures(commands)
     _add_tables(commands)
-    _add_numbers(commands)
-    commands.add_parser("scenes", help="list the scenes that run takes by name: petves run shear")
     return top
 
 
@@ -109,9 +107,6 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
         metavar="WORDS",
         help="submit it as a job array, one run a task, with these words for sbatch",
     )
-
-
-def _add_numbers(commands: argparse._SubParsersAction) -> None:
     cell = commands.add_parser("numbers", help="options of a scene, and chi and Re, from numbers in SI units")
     for name, needed, what in (
         ("radius", True, "perimeter/(2 pi), m"),
@@ -124,6 +119,7 @@ def _add_numbers(commands: argparse._SubParsersAction) -> None:
     ):
         cell.add_argument(f"--{name}", type=float, required=needed, metavar="X", help=what)
     cell.add_argument("--flow", choices=("shear", "extension"), help="shear")
+    commands.add_parser("scenes", help="list the scenes that run takes by name: petves run shear")
 
 
 def _run(command: str, words: dict[str, Any]) -> list[object]:
@@ -150,17 +146,9 @@ def _run(command: str, words: dict[str, Any]) -> list[object]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run one command.
+    """Run one command, that of the process when it is left out; return the exit status.
 
-    Parameters
-    ----------
-    arguments : list of str, optional
-        Words of the command line; those of the process when left out.
-
-    Returns
-    -------
-    int
-        Exit status: 0 done, 1 something is missing or failed (one line on stderr says what, of a sweep one a run).
+    0: done. 1: something is missing or failed, and one line on stderr says what, of a sweep one a run.
     """
     given = sys.argv[1:] if arguments is None else arguments
     try:

@@ -86,7 +86,10 @@ def lines(**given: object) -> list[str]:
     options, found = numbers(**given)
     words = [f"{name} = {value:.4g}" + " s" * (name == "lambda_t") for name, value in found.items()]
     told = f"# {', '.join(words)}; metres and seconds, density 1"
-    late = (
-        ["# Re is not small: -fluid_inertia, in a box with walls or periods, has inertia"] if found["Re"] > 0.1 else []
-    )
-    return [told, *late, *(f"-{name} {value}" for name, value in options.items()), "-output_dir out/numbers"]
+    late = "# Re is not small: -fluid_inertia, in a box with walls or periods, has inertia"
+    return [
+        told,
+        *[late] * (found["Re"] > 0.1),
+        *(f"-{name} {value}" for name, value in options.items()),
+        "-output_dir out/numbers",
+    ]

@@ -9,14 +9,25 @@ from __future__ import annotations
 import ctypes
 import functools
 import os
+import sys
 import threading
 from typing import Any, Callable
 
 import numpy as np
 
 from petves.errors import Error
-from petves.petsc import PETSc
 from petves.program import LIBRARY, candidates
+
+try:
+    import petsc4py
+except ImportError:
+    raise Error(
+        "petsc4py is not installed, which simulating needs; allowed: python3-petsc4py, or that of the library's PETSc"
+    ) from None
+
+if "petsc4py.PETSc" not in sys.modules:  # else it has been started; a .petscrc of the current folder may be anybody's
+    petsc4py.init(["petves", "-skip_petscrc"])
+from petsc4py import PETSc  # noqa: E402
 
 MAX_MESSAGE = 512  # PETVES_MAX_MESSAGE
 MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
@@ -31,19 +42,11 @@ one_thread = threading.RLock()
 Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
 Handle = ctypes.c_void_p
 
-#: int flow(time, n, X[2n], u[2n], context): petves' PetvesFlow.
-Flow = ctypes.CFUNCTYPE(
-    ctypes.c_int,
-    ctypes.c_double,
-    Int,
-    ctypes.POINTER(ctypes.c_double),
-    ctypes.POINTER(ctypes.c_double),
-    ctypes.c_void_p,
-)
-
 _pointer = ctypes.POINTER
 _double = ctypes.c_double
 _text = ctypes.c_char_p
+#: int flow(time, n, X[2n], u[2n], context): petves' PetvesFlow.
+Flow = ctypes.CFUNCTYPE(ctypes.c_int, _double, Int, _pointer(_double), _pointer(_double), ctypes.c_void_p)
 # An MPI communicator is passed as the eight bytes where petsc4py keeps it: a pointer (Open MPI) or an int (MPICH).
 _communicator = ctypes.c_void_p
 
@@ -83,13 +86,7 @@ SIGNATURES = {
 
 @functools.lru_cache(maxsize=None)
 def library() -> ctypes.CDLL:
-    """Return libpetves.so, loaded once.
-
-    Raises
-    ------
-    Error
-        When it is not there, or cannot be loaded.
-    """
+    """Return libpetves.so, loaded once."""
     found = next((path for path in candidates() if path.is_file()), None)
     if found is None:
         raise Error(
@@ -118,15 +115,7 @@ def _petsc4py(name: str, result: type, *arguments: type):
 
 
 def wrap(kind: str, handle: int) -> PETSc.Object:
-    """Return the petsc4py object of a PETSc handle; it shares ownership.
-
-    Parameters
-    ----------
-    kind : str
-        petsc4py's class: Vec, DM, KSP, PC, Mat.
-    handle : int
-        The PETSc object's address.
-    """
+    """Return the petsc4py object of a class (Vec, DM, KSP, PC, Mat) for a PETSc object's address; it shares ownership."""
     return _petsc4py(f"PyPetsc{kind}_New", ctypes.py_object, ctypes.c_void_p)(handle)
 
 

@@ -42,22 +42,62 @@ def half_periods(time: np.ndarray, inclination: np.ndarray) -> np.ndarray:
     return np.diff(passes)
 
 
-def _column(name: str, what: str) -> property:
+def _column(name: str) -> property:
     """Return a property: a column of series.csv after the last step."""
-
-    def value(self: Measures) -> float:
-        return self.measure(name)
-
-    value.__doc__ = what
-    return property(value)
+    return property(lambda self: self.measure(name))
 
 
 class Measures:
-    """Measures after the last step; with several vesicles totals, worst values or means, and `each` for one by one."""
+    """Measures after the last step; with several vesicles totals, worst values or means, and `each` for one by one.
+
+    Attributes
+    ----------
+    time, dt : float
+        Time reached, and the last time step (the next one before the first).
+    energy_kinetic, energy_bending, energy_gravity, energy_contact : float
+        Energies (length^4/time^2): of the velocity minus the background; of bending; minus density difference times gravity
+        times area times centroid; of repulsion and adhesion between membranes.
+    area, length, edge_ratio : float
+        Enclosed area (length^2), length of the membrane (length), longest over shortest edge.
+    area_error, length_error : float
+        Area and length over the initial ones, minus 1.
+    inclination, frequency : float
+        Angle of the long axis (radians in (-pi/2, pi/2]) and tank-treading frequency (radians/time) of the first vesicle;
+        the frequency is NaN unless the membrane turns in one sense.
+    normal_speed : float
+        Largest |u.n| on a membrane (length/time): the speed of its outline.
+    gap : float
+        Least distance of two vesicles, or of one and a wall (length); NaN where there is none.
+    viscosity, normal_stress : float
+        Effective viscosity over nu and first normal stress difference (length^2/time^2) of a sheared channel, by the
+        membranes' forces; NaN in other scenes.
+    div_max, surface_div_max : float
+        What the solver left of the velocity's divergence and of the membrane's inextensibility (1/time).
+    """
 
     _row: ctypes.Array[ctypes.c_double]  # the last
     _rows: list[bytes]
     _columns: dict[str, int]
+
+    time = _column("time")
+    dt = _column("dt")
+    energy_kinetic = _column("energy_kinetic")
+    energy_bending = _column("energy_bending")
+    energy_contact = _column("energy_contact")
+    area = _column("area")
+    length = _column("length")
+    area_error = _column("area_error")
+    length_error = _column("length_error")
+    edge_ratio = _column("edge_ratio")
+    inclination = _column("inclination")
+    frequency = _column("frequency")
+    normal_speed = _column("normal_speed")
+    energy_gravity = _column("energy_gravity")
+    gap = _column("gap")
+    viscosity = _column("viscosity")
+    normal_stress = _column("normal_stress")
+    div_max = _column("div_max")
+    surface_div_max = _column("surface_div_max")
 
     def measure(self, name: str) -> float:
         """Return the value of a column of series.csv after the last step.
@@ -97,59 +137,25 @@ class Measures:
         """Steps taken."""
         return int(self.measure("step"))
 
-    time = _column("time", "Time reached.")
-    dt = _column("dt", "The last time step (the next one before the first).")
-
     @property
     def energy(self) -> float:
         """Kinetic, bending, gravity and contact energy (length^4/time^2)."""
         return self.energy_kinetic + self.energy_bending + self.energy_gravity + self.energy_contact
-
-    energy_kinetic = _column("energy_kinetic", "Kinetic energy of the velocity minus the background (length^4/time^2).")
-    energy_bending = _column("energy_bending", "Bending energy (length^4/time^2).")
-    energy_contact = _column("energy_contact", "Energy of repulsion and adhesion between membranes (length^4/time^2).")
-    area = _column("area", "Enclosed area (length^2).")
-    length = _column("length", "Length of the membrane (length).")
 
     @property
     def reduced_area(self) -> float:
         """V = area/(pi R0^2), R0 = length/(2 pi), of the first vesicle."""
         return 4 * np.pi * self.each("area")[0] / self.each("length")[0] ** 2
 
-    area_error = _column("area_error", "Area over the initial one, minus 1.")
-    length_error = _column("length_error", "Length over the initial one, minus 1.")
-    edge_ratio = _column("edge_ratio", "Longest over shortest edge.")
-
     @property
     def center(self) -> np.ndarray:
         """Centroid of the enclosed area (length), shape (2,)."""
         return np.array([self.measure("center_x"), self.measure("center_y")])
 
-    inclination = _column("inclination", "Angle of the long axis (radians in (-pi/2, pi/2]), of the first vesicle.")
-    frequency = _column(
-        "frequency",
-        "Tank-treading frequency (radians/time) of the first vesicle; NaN unless the membrane turns in one sense.",
-    )
-    normal_speed = _column("normal_speed", "Largest |u.n| on a membrane (length/time): the speed of its outline.")
-
     @property
     def center_velocity(self) -> np.ndarray:
         """Velocity of the centroid (length/time), shape (2,), the mean of several vesicles."""
         return np.array([self.measure("velocity_x"), self.measure("velocity_y")])
-
-    energy_gravity = _column(
-        "energy_gravity", "Minus density difference times gravity times area times centroid (length^4/time^2)."
-    )
-    gap = _column("gap", "Least distance of two vesicles, or of one and a wall (length); NaN where there is none.")
-    viscosity = _column(
-        "viscosity", "Effective viscosity of a sheared channel over nu, by the membranes' forces; NaN in other scenes."
-    )
-    normal_stress = _column(
-        "normal_stress",
-        "First normal stress difference of a sheared channel (length^2/time^2), by the membranes' forces.",
-    )
-    div_max = _column("div_max", "What the solver left of the velocity's divergence (1/time).")
-    surface_div_max = _column("surface_div_max", "What the solver left of the membrane's inextensibility (1/time).")
 
     @property
     def iterations(self) -> dict[str, int]:

@@ -110,15 +110,11 @@ def probe(data: xarray.Dataset, points: ArrayLike) -> xarray.Dataset:
 
     places = np.reshape(np.asarray(points, float), (-1, 2))
     periodic = [name in data.attrs["periodic"] for name in "xy"]
-    box, h, found = data.attrs["box"], data.attrs["h"], {}
-    for name in "uvp":
-        found[name] = _array(
-            data, name, lambda one: interpolate_of(one[name].values, places, box, h, periodic), ("point",)
-        )
-    along = xarray.DataArray(places[:, 0] - np.mean(box[:2]), dims="point")
-    found["p"] = (
-        (found["p"] + data["pressure_gradient"] * along).transpose(*found["p"].dims).assign_attrs(found["p"].attrs)
-    )
+    box, h = data.attrs["box"], data.attrs["h"]
+    make = lambda name: lambda one: interpolate_of(one[name].values, places, box, h, periodic)
+    found = {name: _array(data, name, make(name), ("point",)) for name in "uvp"}
+    added = data["pressure_gradient"] * xarray.DataArray(places[:, 0] - np.mean(box[:2]), dims="point")
+    found["p"] = (found["p"] + added).transpose(*found["p"].dims).assign_attrs(found["p"].attrs)
     places = {name: ("point", places[:, d], {"units": "length"}) for d, name in enumerate("xy")}
     return xarray.Dataset(found).assign_coords(places)
 

@@ -10,12 +10,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from petves.curves import smooth_curve, trigonometric
+from petves.curves import smooth_curve, solid_outline, trigonometric
 from petves.errors import RunError as RunError
 from petves.files import read_file, read_summary
 from petves.runfiles import read_frames, read_h5, read_series
-from petves.solids import solid_outline
-
 
 #: Vesicles up to which series.csv has columns of each.
 FEW = 40
@@ -139,23 +137,18 @@ class Run:
             names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
             return np.stack([self.series[column] for column in names], axis=1)
         values = np.full((len(self.series["step"]), self.vesicles), np.nan)
-
-        def fill(file: h5py.File) -> None:
-            if name not in file:
-                raise RunError(f"column {name}: vesicles have none of that name")
-            rows = min(len(values), len(file["time"]))
-            values[:rows] = file[name][:rows]
-
-        read_h5(self.folder / "vesicles.h5", fill)
+        found = read_h5(self.folder / "vesicles.h5", lambda file: file[name][: len(values)] if name in file else None)
+        if found is None:
+            raise RunError(f"column {name}: vesicles have none of that name")
+        values[: len(found)] = found
         return values
 
     def columns_of_each(self) -> list[str]:
         """Return the names that `each` takes from vesicles.h5; none up to 40 vesicles."""
-        if not (self.folder / "vesicles.h5").is_file() or self.vesicles <= FEW:
+        path = self.folder / "vesicles.h5"
+        if not path.is_file() or self.vesicles <= FEW:
             return []
-        return read_h5(
-            self.folder / "vesicles.h5", lambda file: [name for name in file if name not in ("step", "time")]
-        )
+        return read_h5(path, lambda file: [name for name in file if name not in ("step", "time")])
 
     @functools.cached_property
     def periods(self) -> tuple[float, float]:
@@ -190,13 +183,8 @@ class Run:
                 raise RunError(
                     f"{self.folder / 'run.h5'}: a curve as wide as {(high - low) / period:.3g} periods of the box"
                 )
-            first, last = (int(np.floor((box[2 * d] - x) / period)) if period else 0 for x in (high, low))
-            inside = [
-                k * period
-                for k in range(first, last + 3)
-                if high + k * period > box[2 * d] and low + k * period < box[2 * d + 1]
-            ]
-            shifts.append(inside if period else [0.0])
+            ends = [(box[2 * d] - high) / period, (box[2 * d + 1] - low) / period] if period else [-1, 1]
+            shifts.append(period * np.arange(np.floor(ends[0]) + 1, np.ceil(ends[1])))
         return [outline + (x, y) for x in shifts[0] for y in shifts[1]]
 
     def options(self) -> dict[str, str]:

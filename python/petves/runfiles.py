@@ -9,9 +9,9 @@ from typing import Any, TypeVar
 import h5py
 import numpy as np
 
+from petves.curves import KINDS
 from petves.errors import RunError
 from petves.files import read_file
-from petves.solids import KINDS
 
 T = TypeVar("T")
 

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from petves.errors import Error
-from petves.library import MAX_MESSAGE, MAX_PATH, PETSC_ERR_USER_INPUT, Flow, FlowFunction, Handle, Int
+from petves.library import MAX_MESSAGE, MAX_PATH, PETSC_ERR_USER_INPUT, Flow, FlowFunction, Handle, Int, PETSc
 from petves.library import communicator, flow_function, library, one_thread, option_text
-from petves.petsc import PETSc
 from petves.progress import progress_bar
 from petves.state import State
 
@@ -289,7 +288,7 @@ class Simulation(State):
         stepped, failure, word = ctypes.c_int(), ctypes.c_char_p(), ctypes.c_char_p()
         first = self._comm.getRank() == 0
         if live and first:
-            from petves.views.live import Live
+            from petves.views.watch import Live
 
             callback = Live(self, callback)
         with progress_bar(end, self.time, progress if first else False) as bar:

@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from petves.errors import Error
-from petves.library import Handle, Int, one_thread, wrap
+from petves.library import Handle, Int, PETSc, one_thread, wrap
 from petves.measures import Measures
-from petves.petsc import PETSc
 
 KSP_NAMES = ("coupled", "tension", "bending")
 DM_NAMES = {"velocity": "dm_velocity", "u": "dm_u", "v": "dm_v", "pressure": "dm_pressure"}

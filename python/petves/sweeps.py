@@ -42,7 +42,7 @@ def sweep(
     ranks: int = 1,
     progress: bool | None = None,
 ) -> Path:
-    """Run every combination of a grid of options.
+    """Run every combination of a grid of options; return sweep.csv, of which `failures` says what is not done.
 
     Parameters
     ----------
@@ -62,22 +62,16 @@ def sweep(
     progress : bool, optional
         Show a progress bar; when left out, if standard error is a terminal.
 
-    Returns
-    -------
-    Path
-        sweep.csv; `failures` says what of it is not done.
-
     Raises
     ------
     Error
         When the grid is empty, the folder holds runs of other shared options, or a file of the sweep cannot be written.
     """
-    folder, grid = Path(folder), _checked(grid, jobs, ranks)
+    folder, points = Path(folder), _combinations(grid, jobs, ranks)
     base = Path(options_file).read_text() if options_file and Path(options_file).is_file() else ""
     if options_file and not base:
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
     command()
-    points = list({_name(point): point for point in _points(grid)}.values())
     shared = _made(folder) / "shared.opts"
     if not shared.is_file():
         _replace(shared, base)
@@ -90,11 +84,11 @@ def sweep(
             for done, future in enumerate(as_completed(waiting), 1):
                 ended[waiting[future]] = future.result()
                 bar(done)
-                _write(folder, grid, points, ended)
+                _write(folder, points, ended)
         except BaseException:
             pool.shutdown(cancel_futures=True)  # what has been started still ends
             raise
-    return _write(folder, grid, points, ended)
+    return _write(folder, points, ended)
 
 
 def submit(
@@ -109,7 +103,7 @@ def submit(
     `slurm` has further words for sbatch; `folder`, `grid`, `options_file` and `ranks` are as for `sweep`, which makes the
     table when the tasks have ended.
     """
-    folder, points = Path(folder).resolve(), list(_points(_checked(grid, 1, ranks)))
+    folder, points = Path(folder).resolve(), _combinations(grid, 1, ranks)
     task = [sys.executable, "-m", "petves", "sweep", str(folder), "--ranks", str(ranks), "--jobs", "1"]
     task += ["--options-file", str(Path(options_file).resolve())] if options_file else []
     varied = ([word for name, value in point.items() for word in ("--vary", name, value)] for point in points)
@@ -139,11 +133,6 @@ def failures(path: str | Path) -> list[str]:
     return [f"{row['folder']}: {row['status']}: {row['message']}" for row in rows if row["status"] != "done"]
 
 
-def _points(grid: dict[str, list[str]]) -> Iterator[dict[str, str]]:
-    for values in itertools.product(*grid.values()):
-        yield dict(zip(grid, values))
-
-
 def _made(folder: Path) -> Path:
     """Return a folder that is there."""
     try:
@@ -159,8 +148,8 @@ def _replace(path: Path, text: str) -> None:
         fresh.write_text(text, errors="surrogateescape")
 
 
-def _checked(grid: Mapping[str, Iterable[object]], jobs: int, ranks: int) -> dict[str, list[str]]:
-    """Return a grid's values as text."""
+def _combinations(grid: Mapping[str, Iterable[object]], jobs: int, ranks: int) -> list[dict[str, str]]:
+    """Return every combination of a grid's values as text, each once."""
     grid = {name: [str(value) for value in values] for name, values in grid.items()}
     if not grid or not all(grid.values()):
         raise Error("sweep: nothing to vary; allowed: at least one option with values")
@@ -169,7 +158,8 @@ def _checked(grid: Mapping[str, Iterable[object]], jobs: int, ranks: int) -> dic
             raise Error(f"sweep: {name} cannot vary; allowed: any other option")
     if jobs < 1 or ranks < 1:
         raise Error(f"sweep: {jobs} jobs of {ranks} ranks; allowed: at least 1 each")
-    return grid
+    points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
+    return list({_name(point): point for point in points}.values())
 
 
 def _name(point: dict[str, str]) -> str:
@@ -213,15 +203,11 @@ def _launch(home: Path, words: list[str], ranks: int) -> Ended:
         return ("done", "") if reason in GOOD else ("interrupted", reason)
     if status == 2:
         return "stopped", message
-    if status == 1 and "-restart" not in begin and _refused(words, ranks):
-        return "refused", message
+    if status == 1 and "-restart" not in begin:  # are the options what is wrong? This sets all up and writes nothing:
+        status, asked = run_program([*words, "-help", "all"], ranks)
+        if status == 1 and asked.startswith("-"):
+            return "refused", message
     return "failed", message
-
-
-def _refused(words: list[str], ranks: int) -> bool:
-    """Return whether the options are what is wrong: petves with -help all sets everything up and writes nothing."""
-    status, message = run_program([*words, "-help", "all"], ranks)
-    return status == 1 and message.startswith("-")
 
 
 def _move_aside(home: Path) -> None:
@@ -248,10 +234,10 @@ def _row(home: Path, ended: Ended) -> dict[str, object]:
     return row
 
 
-def _write(folder: Path, grid: dict[str, list[str]], points: list[dict[str, str]], ended: dict[str, Ended]) -> Path:
+def _write(folder: Path, points: list[dict[str, str]], ended: dict[str, Ended]) -> Path:
     """Write sweep.csv of the runs that have ended, in the grid's order."""
     rows = [{**point, **_row(folder / _name(point), ended[_name(point)])} for point in points if _name(point) in ended]
-    names = list(dict.fromkeys(itertools.chain(grid, ("folder", "status", "message"), *rows)))
+    names = list(dict.fromkeys(itertools.chain(points[0], ("folder", "status", "message"), *rows)))
     text = io.StringIO()
     writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
     writer.writeheader()

@@ -14,17 +14,11 @@ def ellipse_axes(reduced_area: float) -> tuple[float, float]:
         V = 4 pi area/perimeter^2, in (0, 1).
     """
     angle = np.linspace(0, 2 * np.pi, 512, endpoint=False)
-
-    def reduced(a: float) -> float:
+    low, high = 1.0, 1e3
+    for _ in range(70):
+        a = 0.5 * (low + high)
         perimeter = np.mean(np.hypot(a * np.sin(angle), np.cos(angle) / a)) * 2 * np.pi
-        return 4 * np.pi**2 / perimeter**2
-
-    low, high = 1.0, 2.0
-    while reduced(high) > reduced_area:
-        high *= 2
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if reduced(middle) > reduced_area else (low, middle)
+        low, high = (a, high) if 4 * np.pi**2 / perimeter**2 > reduced_area else (low, a)
     return low, 1 / low
 
 

@@ -122,6 +122,7 @@ def test_python_has_each(whole):
         run.each("colour")
     data = petves.load(whole)
     assert data["each_length"].dims == ("step", "member") and data["each_length"].attrs["units"] == "length"
+    np.testing.assert_array_equal(data["each_inclination"], run.each("inclination"))
 
 
 def test_images_are_cut_at_the_seam(tmp_path):

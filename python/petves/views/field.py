@@ -73,12 +73,8 @@ def draw_membranes(
 ) -> list[Artist]:
     """Draw the outlines coloured by tension over a wider line of one colour, of up to MANY vesicles smooth, the first one dotted.
 
-    Obstacles are areas in grey, tracers dots. Images across a periodic seam are there too.
-
-    Returns
-    -------
-    list of Artist
-        What was drawn; with vesicles the last one is what a colour bar of the tension needs.
+    Obstacles are areas in grey, tracers dots. Images across a periodic seam are there too. Returns what was drawn; with vesicles the last one
+    is what a colour bar of the tension needs.
     """
     from matplotlib.collections import LineCollection
 

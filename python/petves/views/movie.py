@@ -31,7 +31,7 @@ def movie(
     streamlines: bool = False,
     look: Look = PLAIN,
 ) -> Path:
-    """Film a run: a picture a saved time. A bar shows how far it has come, where standard error is a terminal.
+    """Film a run: a picture a saved time; return the file. A bar shows how far it has come, where standard error is a terminal.
 
     Parameters
     ----------
@@ -53,11 +53,6 @@ def movie(
         Draw streamlines too; a film then takes several times as long.
     look : Look
         Colour map, and whether the picture goes along with a vesicle; a film has its own format and size.
-
-    Returns
-    -------
-    Path
-        The file written.
 
     Raises
     ------

@@ -98,11 +98,8 @@ def plot_energy(run: Run, look: Look = PLAIN) -> Path:
     figure, (axes,) = new_figure(6, 4, look=look)
     time, parts = run.series["time"], run.energies()
     total = sum(parts.values())
-    scale, name = total[0], "E_0"
-    if scale <= 0:
-        scale, name = np.max(np.abs(total)), r"E_{\max}"
-    if scale <= 0:
-        scale, name = 1.0, "1"
+    scales = (total[0], "E_0"), (np.max(np.abs(total)), r"E_{\max}"), (1.0, "1")
+    scale, name = next(one for one in scales if one[0] > 0)
     if len(parts) > 1:
         axes.plot(time, total / scale, "k-", lw=2, label="total $E$")
     styles = {"bending": "--C0", "kinetic": "-.C1", "gravity": ":C2", "contact": ":C3"}
@@ -117,10 +114,8 @@ def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
     """Draw the relative errors of area and length against time, on a logarithmic axis."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time = run.series["time"][1:]
-    for column, style, label in (
-        ("area_error", "-", "area, $|A - A_0|/A_0$"),
-        ("length_error", "--", "length, $|L - L_0|/L_0$"),
-    ):
+    labels = {"area_error": "area, $|A - A_0|/A_0$", "length_error": "length, $|L - L_0|/L_0$"}
+    for (column, label), style in zip(labels.items(), ("-", "--")):
         axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
     dress(axes, xlabel="time $t$", ylabel="relative error")
     legend_above(axes)

@@ -32,7 +32,7 @@ CAPTIONS = {
 
 
 def report(folder: str | Path, output: str | Path | None = None) -> Path:
-    """Write a report of a run: the scene in words, key numbers, plots, and the membrane playable with a slider.
+    """Write a report of a run and return it: the scene in words, key numbers, plots, the membrane playable with a slider.
 
     Parameters
     ----------
@@ -40,11 +40,6 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         The run's ``-output_dir``.
     output : str or Path, optional
         File to write; report.html in the folder when left out. It needs no other file and no network.
-
-    Returns
-    -------
-    Path
-        The file written.
 
     Raises
     ------
@@ -56,11 +51,13 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     told = read_file(run.folder / "resolved.opts", lambda _: (key_numbers(run), scene_in_words(run)))
     rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in told[0])
     words = "".join(f"<p>{escape(text)}</p>" for text in told[1])
+    few = " The dot is marker 0, a point of the membrane; dotted: the first outline." if run.vesicles <= MANY else ""
+    membranes = f"Membranes are coloured by their tension.{few} " if run.vesicles else ""
     parts = {
         "TITLE": escape(f"petves: {shown(run.folder.resolve().name)}"),
         "WORDS": words,
         "NUMBERS": rows,
-        "NOTE": _note(run),
+        "NOTE": f"{membranes}The colours of the fluid span the range of each time.",
         "PLOTS": _plots(run),
         "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
@@ -69,13 +66,6 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     with writing(path) as fresh:
         fresh.write_text(filled("report.html", parts), encoding="utf-8")
     return path
-
-
-def _note(run: Run) -> str:
-    """Return what the picture's colours and dots are."""
-    few = " The dot is marker 0, a point of the membrane; dotted: the first outline." if run.vesicles <= MANY else ""
-    membranes = f"Membranes are coloured by their tension.{few} " if run.vesicles else ""
-    return f"{membranes}The colours of the fluid span the range of each time."
 
 
 def _plots(run: Run) -> str:

@@ -28,6 +28,7 @@ class Window:
         self.run, self.frame = run, frame
         self.limits, self.origin, self.velocity = run.box.copy(), np.zeros(2), np.zeros(2)
         self.moving = follow is not None
+        self._cells = [np.arange(len(cells)) for cells in run.cell_centers()]  # that are seen, along x and y
         if follow is None:
             return
         if not 1 <= follow <= run.vesicles:
@@ -41,30 +42,18 @@ class Window:
                 speeds = run.each(f"velocity_{'xy'[d]}")[:, follow - 1]
                 self.velocity[d] = np.nan_to_num(run.at_step(frame, speeds))
                 self.limits[2 * d : 2 * d + 2] = -period / 2, period / 2
+                first = int(np.floor((center[d] - period / 2 - run.box[2 * d]) / run.h))
+                self._cells[d] = first + np.arange(len(self._cells[d]) + 1)
 
     @property
     def extent(self) -> np.ndarray:
         """The cells' outer sides, x_min, x_max, y_min, y_max; up to a cell more than the limits."""
-        extent = self.limits.copy()
-        for d in range(2):
-            if self.origin[d]:
-                first, count = self._cells(d)
-                low = self.run.box[2 * d] + first * self.run.h - self.origin[d]
-                extent[2 * d : 2 * d + 2] = low, low + count * self.run.h
-        return extent
-
-    def _cells(self, d: int) -> tuple[int, int]:
-        """Return the first cell seen in a direction that moves, and how many."""
-        cells = round(self.run.periods[d] / self.run.h)
-        first = int(np.floor((self.origin[d] - self.run.periods[d] / 2 - self.run.box[2 * d]) / self.run.h))
-        return first, cells + 1
+        ends = [(cells[0], cells[-1] + 1) for cells in self._cells]
+        return np.ravel(self.run.box[::2, None] + self.run.h * np.array(ends) - self.origin[:, None])
 
     def _seen(self, field: np.ndarray) -> np.ndarray:
-        for d in range(2):
-            if self.origin[d]:
-                first, count = self._cells(d)
-                field = np.take(field, np.arange(first, first + count), axis=1 - d, mode="wrap")
-        return field
+        x, y = (cells % n for cells, n in zip(self._cells, field.shape[::-1]))
+        return field[np.ix_(y, x)]
 
     def fields(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return u, v and the total pressure, zero in the middle, on the cells of `extent`, each of shape (ny, nx)."""
@@ -87,9 +76,7 @@ class Window:
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (nx,), and y, shape (ny,), of the cells of `fields`."""
-        extent, h = self.extent, self.run.h
-        counts = [round((extent[2 * d + 1] - extent[2 * d]) / h) for d in range(2)]
-        return tuple(extent[2 * d] + h * (0.5 + np.arange(counts[d])) for d in range(2))
+        return tuple(self.run.box[2 * d] + self.run.h * (0.5 + self._cells[d]) - self.origin[d] for d in range(2))
 
     def solids(self) -> list[np.ndarray]:
         """Return closed curves, each of shape (n + 1, 2), that are solid within by the nonzero rule.
@@ -98,7 +85,7 @@ class Window:
         """
         curves = [self.run.obstacle_curve(k, self.frame) for k in range(len(self.run.obstacles))]
         seen = [image for curve in curves for image in self.run.images_of(curve, self.limits, self.origin)]
-        if all(_turns_left(curve) for curve in curves):
+        if all(np.sum(x[:-1] * np.diff(y) - y[:-1] * np.diff(x)) > 0 for x, y in ((c - c[0]).T for c in curves)):
             return seen
         x0, x1, y0, y1 = self.limits + np.tile([-1.0, 1.0], 2) * np.ptp(self.limits)
         return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)]), *seen]
@@ -115,9 +102,3 @@ class Window:
         """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
         outline = (self.run.curve if curve else self.run.outline)(self.frame if frame is None else frame, vesicle)
         return self.run.images_of(outline, self.limits, self.origin)
-
-
-def _turns_left(curve: np.ndarray) -> bool:
-    """Return whether a closed curve, shape (n + 1, 2), is counter-clockwise."""
-    (x, y), (xn, yn) = (curve - curve[0])[:-1].T, (curve - curve[0])[1:].T
-    return float(np.sum(x * yn - xn * y)) > 0

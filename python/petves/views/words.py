@@ -8,6 +8,7 @@ from petves.run import Run
 from petves.views.curves import columns_of
 from petves.views.figures import MANY
 
+SIDES = {"wall": "walls", "periodic": "periodic", "free": "without bounds"}
 DRIVE = ("pressure_drop", "flux", "viscosity")  # columns of channels
 FLOWS = {
     "quiescent": "There is no background flow",
@@ -30,9 +31,9 @@ def scene_in_words(run: Run) -> list[str]:
     o = {name: _short(value) for name, value in run.options().items()}
     x, y = ([f"{c:g}" for c in run.box[k : k + 2]] for k in (0, 2))
     inertia = run.summary.get("inertia", o["fluid_inertia"])  # the model that -fluid_inertia auto has chosen
-    cells, walls = o["domain_cells"].replace(",", " x "), _boundaries(o["domain_bc_x"], o["domain_bc_y"])
+    cells, walls = o["domain_cells"].replace(",", " x "), [SIDES[o[f"domain_bc_{c}"]] for c in "xy"]
     fluid = (
-        f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {cells} cells (h = {run.h:g}), {walls}, holds a fluid of "
+        f"A box [{x[0]}, {x[1]}] x [{y[0]}, {y[1]}] of {cells} cells (h = {run.h:g}), {walls[0]} in x, {walls[1]} in y, holds a fluid of "
         f"viscosity {run.nu:g}: {INERTIA.get(inertia, inertia)}. {FLOWS[o['flow_type']].format(**o)}."
     )
     told = [fluid, _vesicles(run, o), _solids(run, o), _method(run, o)]
@@ -58,11 +59,6 @@ def _short(value: str) -> str:
         return ",".join(f"{float(item):g}" for item in value.split(","))
     except ValueError:
         return value
-
-
-def _boundaries(x: str, y: str) -> str:
-    names = {"wall": "walls", "periodic": "periodic", "free": "without bounds"}
-    return f"{names[x]} in x and y" if x == y else f"{names[x]} in x, {names[y]} in y"
 
 
 def _vesicles(run: Run, o: dict[str, str]) -> str:
@@ -107,10 +103,14 @@ def key_numbers(run: Run) -> list[tuple[str, str]]:
     total = sum(run.energies().values())
     rows.append(("energy, first and last", f"{total[0]:.4g}, {total[-1]:.4g}"))
     if run.vesicles:
-        rows += _sizes(run) + _motions(run) + _losses(run)
+        rows += _sizes(run) + _motions(run)
+        losses = {name: f"{np.abs(s[f'{name}_error']).max():.1e}" for name in ("area", "length")}
+        rows += [(f"worst {name} error", value) for name, value in losses.items()]
+        rows.append(("last tension, least and largest", f"{run.tension[-1].min():.4g}, {run.tension[-1].max():.4g}"))
     rows += _forces(run)
     rows.append(("largest |div u| left", f"{s['div_max'].max():.1e}"))
-    rows.append(("iterations a step", ", ".join(_iterations(s))))
+    means = {name: s[f"{name}_its"][1:] for name in ("coupled", "tension", "bending")}
+    rows.append(("iterations a step", ", ".join(f"{name} {x.mean():.1f}" for name, x in means.items() if x.any())))
     rows.append(("fast solves a step", f"{s['nsolve'][1:].mean():.0f}" if len(s["nsolve"]) > 1 else ""))
     rows.append(("seconds in steps", f"{s['wall'].sum():.3g}"))
     rows.append(("Reynolds number", f"{run.summary['reynolds']:.3g}" if "reynolds" in run.summary else ""))
@@ -164,18 +164,3 @@ def _forces(run: Run) -> list[tuple[str, str]]:
     gap = run.series.get("gap", np.zeros(0))
     rows = [("least gap", _span(np.array([np.nanmin(gap)]), ".3g") if np.isfinite(gap).any() else "")]
     return rows + [(f"last {name.replace('_', ' ')}", _span(values)) for name, values in last.items()]
-
-
-def _losses(run: Run) -> list[tuple[str, str]]:
-    s, tension = run.series, run.tension[-1]
-    return [
-        ("worst area error", f"{np.abs(s['area_error']).max():.1e}"),
-        ("worst length error", f"{np.abs(s['length_error']).max():.1e}"),
-        ("last tension, least and largest", f"{tension.min():.4g}, {tension.max():.4g}"),
-    ]
-
-
-def _iterations(series: dict[str, np.ndarray]) -> list[str]:
-    """Return mean iterations of the solves that there are."""
-    means = {name: series[f"{name}_its"][1:] for name in ("coupled", "tension", "bending")}
-    return [f"{name} {values.mean():.1f}" for name, values in means.items() if values.any()]
