@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import difflib
+import re
 
 import numpy as np
 
@@ -19,6 +20,21 @@ def turned_angle(inclination: np.ndarray) -> np.ndarray:
         The column of series.csv, step after step; between two steps a vesicle may turn by less than pi/2.
     """
     return np.unwrap(2 * np.asarray(inclination)) / 2
+
+
+def deformation(markers: np.ndarray) -> np.ndarray:
+    """Return Taylor's deformation (a - b)/(a + b) of closed curves, shape (..., n, 2); shape (...).
+
+    a and b are the semi-axes of the ellipse with the curve's second moments of area.
+    """
+    z = markers[..., 0] + 1j * markers[..., 1]
+    wave = 1j * np.fft.fftfreq(z.shape[-1], 1 / z.shape[-1])
+    swept = (np.conj(z) * np.fft.ifft(wave * np.fft.fft(z))).imag  # twice the area
+    z = z - 2 / 3 * np.sum(z * swept, -1, keepdims=True) / np.sum(swept, -1, keepdims=True)
+    swept = (np.conj(z) * np.fft.ifft(wave * np.fft.fft(z))).imag
+    sum_, difference = np.sum(abs(z) ** 2 * swept, -1), abs(np.sum(z**2 * swept, -1))
+    axes = np.sqrt((sum_ - difference) / (sum_ + difference))
+    return (1 - axes) / (1 + axes)
 
 
 def half_periods(time: np.ndarray, inclination: np.ndarray) -> np.ndarray:
@@ -139,8 +155,8 @@ class Measures:
 
     @property
     def energy(self) -> float:
-        """Kinetic, bending, gravity and contact energy (length^4/time^2)."""
-        return self.energy_kinetic + self.energy_bending + self.energy_gravity + self.energy_contact
+        """Energy of all kinds (length^4/time^2): kinetic, bending, gravity, contact, stretching."""
+        return sum(self.measure(name) for name in self._columns if re.fullmatch("energy_[a-z]+", name))
 
     @property
     def reduced_area(self) -> float:

@@ -17,6 +17,7 @@ class Options(TypedDict, total=False):
     flow_type: Literal['quiescent', 'shear', 'poiseuille', 'extension', 'uniform', 'custom', 'formula'] | None  # background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type
     flow_rate: Value  # rate of shear or extension (1/time)
     flow_chi: Value  # in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle
+    flow_ca_stretching: Value  # in place of -flow_rate: capillary number nu rate R0/E_s, R0 of the largest vesicle, E_s the largest -membrane_stretching
     flow_peak_velocity: Value  # u_max of poiseuille (length/time)
     flow_ca: Value  # in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w
     flow_velocity: Value  # uniform: u_x,u_y (length/time)
@@ -78,6 +79,8 @@ class Options(TypedDict, total=False):
     contact_adhesion: Value  # with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none
     contact_adhesion_range: Value  # B, width of the band from D to D + B in which they are drawn together (length); 0: D
     membrane_derivative: Literal['fd', 'bending', 'spectral'] | None  # derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges; split, penalty: fd
+    membrane_law: Literal['inextensible', 'hooke', 'green', 'neo_hookean'] | None  # coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)
+    membrane_stretching: Value  # E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)
     scheme_startup: Literal['euler', 'graded'] | None  # first step of orders 2 and 3: backward Euler, or five growing parts of a step
     time_step: Value  # dt (time)
     time_end: Value  # end time, reached exactly: the last steps are shortened (time)

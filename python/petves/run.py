@@ -31,6 +31,10 @@ COLUMNS = (
 ).split()
 
 
+#: What energies there are, as in the columns energy_NAME.
+ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching")
+
+
 @dataclass
 class Run:
     """One run of petves.
@@ -204,12 +208,12 @@ class Run:
         return read_h5(self.folder / "run.h5", lambda file: tuple(file["fluid"][name][place] for name in "uvp"))
 
     def energies(self) -> dict[str, np.ndarray]:
-        """Return the energies that the run has at each step (length^4/time^2): bending, kinetic, gravity, contact.
+        """Return the energies that the run has at each step (length^4/time^2), by name, such as bending.
 
         Those that are zero at all steps are left out: without gravity or contact, and the kinetic one of unbounded fluid,
         which is not computed.
         """
-        columns = {name: self.series.get(f"energy_{name}") for name in ("bending", "kinetic", "gravity", "contact")}
+        columns = {name: self.series.get(f"energy_{name}") for name in ENERGIES}
         found = {name: values for name, values in columns.items() if values is not None and values.any()}
         return found or {"kinetic": self.series["energy_kinetic"]}
 

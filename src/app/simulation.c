@@ -125,8 +125,7 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(FluidCreate(&scene->fluid, &s->fluid));
   PetscCall(CreateLayouts(comm, scene, s));
   PetscCall(ObstaclesCreate(scene, s->all, &s->obstacles));
-  PetscCall(MembraneCreate(s->layout, scene->shape.X, scene->membrane.each, (DerivativeType)scene->membrane.derivative,
-                           &s->membrane));
+  PetscCall(MembraneCreate(s->layout, scene->shape.X, &scene->membrane, &s->membrane));
   PetscCall(CreateCoupling(scene, s));
   PetscCall(BaselinesRegister());
   PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));

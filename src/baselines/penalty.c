@@ -64,7 +64,7 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   /* 3  X += dt (u_inf + E u), and the tension that goes with it */
   PetscCall(CouplingInterpolate(s->coupling, q->w, q->U));
-  PetscCall(SchemeMarkerVelocity(s, q->U, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->U, q->sigma, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(SpringTension(s, d, q->X, q->sigma, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -107,7 +107,7 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   PetscCall(VecAXPY(q->p, 1, d->dp));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingInterpolate(c, q->w, q->U));
-  PetscCall(SchemeMarkerVelocity(s, q->U, q->U));
+  PetscCall(SchemeMarkerVelocity(s, q->U, q->sigma, q->U));
   PetscCall(VecAXPY(q->X, q->dt, q->U));
   PetscCall(VecAXPY(q->sigma, 1, d->dsigma));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,5 @@
 #include "bodies/law.h"
+#include "bodies/stretch.h"
 #include "numerics/blas.h"
 
 /* Relative errors of an edge above which all are corrected after a step, with the area target and without, and of a
@@ -15,12 +16,14 @@ PetscErrorCode LawCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end
   PetscCall(PetscNew(law));
   **law = (struct _p_MembraneLaw){m, h * h, vesicle, end, start[vesicle], start[end] - start[vesicle]};
   PetscCall(PetscMalloc1(2 * (*law)->n, &(*law)->tau));
+  if (m->law != LAW_INEXTENSIBLE) PetscCall(PetscCalloc2((*law)->n, &(*law)->c, (*law)->n, &(*law)->excess));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LawDestroy(MembraneLaw *law) {
   PetscFunctionBeginUser;
   if (*law) PetscCall(PetscFree((*law)->tau));
+  if (*law) PetscCall(PetscFree2((*law)->c, (*law)->excess));
   if (*law) PetscCall(PetscFree3((*law)->ratio, (*law)->z, (*law)->speed));
   PetscCall(PetscFree(*law));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -40,8 +43,16 @@ static PetscInt LawOffset(MembraneLaw law, PetscInt v) {
   return law->membrane->layout->start[v] - law->first;
 }
 
-void LawPlace(MembraneLaw law, const PetscScalar X[]) {
-  MembraneTangents(law->membrane, law->vesicle, law->end, X, law->tau);
+void LawPlace(MembraneLaw law, PetscReal a0, const PetscScalar X[]) {
+  const Membrane m = law->membrane;
+  MembraneTangents(m, law->vesicle, law->end, X, law->tau);
+  for (PetscInt v = law->vesicle; v < law->end && law->c; v++)
+    for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) {
+      const PetscReal q = PetscSqr(law->tau[2 * k]) + PetscSqr(law->tau[2 * k + 1]);
+      const Stretch s = StretchOf(m->law, q);
+      law->c[k] = MembraneStretches(m, v) ? 0.5 * a0 * m->ds[v] / (m->modulus[v] * s.slope) : 0;
+      law->excess[k] = MembraneStretches(m, v) ? 0.5 * s.sigma / s.slope - 0.5 * (q - 1) : 0;
+    }
 }
 
 void LawForce(MembraneLaw law, PetscReal alpha, const PetscScalar sigma[], PetscScalar F[]) {
@@ -63,6 +74,8 @@ void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], 
     MembraneEdges(m, v, V + 2 * at, e);
     for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++)
       d[at + k] = (tau[2 * k] * e[2 * k] + tau[2 * k + 1] * e[2 * k + 1]) / law->h2;
+    for (PetscInt k = at; k < at + LayoutCount(m->layout, v) && law->c && sigma; k++)
+      d[k] -= law->c[k] * sigma[k] / law->h2;
   }
 }
 
@@ -85,6 +98,7 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g) {
         gap += e * (hat[2 * k + c] - e);
       }
       d[at + k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
+      if (law->c) d[at + k] -= a0 * ds * law->excess[at + k] / law->h2;
     }
   }
   PetscCall(VecRestoreArray(g, &d));
@@ -100,20 +114,22 @@ void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar 
   }
 }
 
-PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec g, PetscReal *largest) {
-  const PetscScalar *v, *aim;
+PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec sigma, Vec g, PetscReal *largest) {
+  const PetscScalar *v, *s, *aim;
   PetscScalar *d;
   PetscReal own = 0;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(V, &v));
+  PetscCall(VecGetArrayRead(sigma, &s));
   PetscCall(VecGetArrayRead(g, &aim));
   PetscCall(PetscMalloc1(law->n, &d));
-  LawRows(law, v, NULL, d);
+  LawRows(law, v, s, d);
   for (PetscInt k = 0; k < law->n; k++) d[k] -= aim[k];
   LawScale(law, 1, PETSC_FALSE, d);
   for (PetscInt k = 0; k < law->n; k++) own = PetscMax(own, PetscAbsReal(d[k]));
   PetscCall(PetscFree(d));
   PetscCall(VecRestoreArrayRead(g, &aim));
+  PetscCall(VecRestoreArrayRead(sigma, &s));
   PetscCall(VecRestoreArrayRead(V, &v));
   PetscCallMPI(MPI_Allreduce(&own, largest, 1, MPIU_REAL, MPI_MAX, law->membrane->layout->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,6 +165,7 @@ PetscErrorCode LawSchur(MembraneLaw law, const PetscReal K[], PetscReal C[]) {
   }
   for (PetscInt k = 0; k < n; k++) trace += C[k * n + k];
   for (PetscInt k = 0; k < n; k++) C[k * n + k] += REGULAR * trace / n;
+  for (PetscInt k = 0; k < n && law->c; k++) C[k * n + k] += law->c[k] / law->h2;
   PetscCall(PetscFree(D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -200,7 +217,7 @@ PetscErrorCode LawRestore(MembraneLaw law, PetscInt v, PetscBool lengths, PetscS
   PetscFunctionBeginUser;
   *error = 0;
   *shift = law->ratio ? MembraneRestoreArea(m, v, X) : 0;
-  if (!lengths || PetscAbsReal(*shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!lengths || MembraneStretches(m, v) || PetscAbsReal(*shift) > 0.5 * m->ds[v]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MembraneRestoreEdges(m, v, tolerance, X, error));
   if (*error == 0 && law->ratio) PetscCall(MembraneRestoreLength(m, v, LENGTH_TOLERANCE, X));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,8 +11,8 @@ static PetscReal ArcLength(Membrane m, PetscInt v, const PetscScalar X[]) {
   return length;
 }
 
-PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscReal bending[], DerivativeType derivative,
-                              Membrane *out) {
+PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given, Membrane *out) {
+  const PetscReal *bending = given->each;
   const PetscInt vesicles = layout->bodies;
   MembraneWork *w;
   Membrane m;
@@ -23,9 +23,10 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscRea
   m->layout = layout;
   m->bending = 0;
   for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, bending[v]);
-  m->derivative = derivative;
-  PetscCall(PetscMalloc6(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
-                         &m->arc, vesicles, &m->part));
+  m->derivative = (DerivativeType)given->derivative;
+  m->law = (LawType)given->law;
+  PetscCall(PetscMalloc7(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
+                         &m->arc, vesicles, &m->part, vesicles, &m->modulus));
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
                          2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
   for (PetscInt v = 0; v < vesicles; v++) {
@@ -37,6 +38,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscRea
     m->A0[v] = measures.area;
     m->L0[v] = measures.length;
     m->ds[v] = measures.length / n;
+    m->modulus[v] = given->modulus[v];
     m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -47,7 +49,7 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
-  PetscCall(PetscFree6(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part));
+  PetscCall(PetscFree7(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part, m->modulus));
   PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));
   PetscCall(PetscFree(*membrane));
   PetscFunctionReturn(PETSC_SUCCESS);

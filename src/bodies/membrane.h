@@ -24,16 +24,21 @@ struct _p_Membrane {
   PetscReal *A0, *L0; /* [vesicles] initial area and length */
   PetscReal bending;  /* the largest c_b */
   PetscReal *part;    /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
+  LawType law;        /* of the membranes that stretch */
+  PetscReal *modulus; /* [vesicles] E_s (length^3/time^2); 0 of inextensible ones */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
   MembraneWork work;
 };
 
-/* MembraneCreate - membranes at rest with the markers X[2M] of all vesicles, and c_b of each, bending[vesicles]. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const PetscReal bending[],
-                                           DerivativeType derivative, Membrane *membrane);
+/* MembraneCreate - membranes at rest with the markers X[2M] of all vesicles, as the scene gives them. Not collective.
+   MembraneStretches - whether a vesicle's membrane stretches. */
+PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given,
+                                           Membrane *membrane);
+static inline PetscBool MembraneStretches(Membrane membrane, PetscInt vesicle) {
+  return membrane->modulus[vesicle] > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
 PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
 
 /* MembraneEdges - edges e = D X of one vesicle: chords e_k = X_k - X_{k-1}, or spectral derivatives dX/dk.

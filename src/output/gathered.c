@@ -18,6 +18,20 @@ PetscErrorCode StateGather(const StatePart *p, PetscReal values[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode StateTension(Scheme s, const State *q, PetscReal T[]) {
+  const Membrane m = s->membrane;
+  PetscReal *X, *tau;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutGatherVec(m->layout, q->sigma, T));
+  if (m->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(2 * m->layout->M, &X, 2 * m->layout->M, &tau));
+  PetscCall(LayoutGatherVec(m->layout, q->X, X));
+  MembraneTangents(m, 0, m->layout->bodies, X, tau);
+  for (PetscInt k = 0; k < m->layout->M; k++) T[k] *= PetscHypotReal(tau[2 * k], tau[2 * k + 1]);
+  PetscCall(PetscFree2(X, tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StateScatter(const StatePart *p, const PetscReal values[]) {
   PetscInt first, end;
   PetscScalar *own;

@@ -83,7 +83,7 @@ static void PlaceLaw(DenseBlocks b, PetscInt k) {
   const BlockFrame *f = &b->frame[k];
   const PetscReal *X = b->coupling->markers->X + 2 * law->first;
   if (f->turns && f->made) RigidFitInto(&f->fit, 2, law->n, X, f->U);
-  LawPlace(law, f->turns && f->made ? f->U : X);
+  LawPlace(law, b->coupling->fluid->a0, f->turns && f->made ? f->U : X);
 }
 
 void DenseBlocksPlace(DenseBlocks b) {

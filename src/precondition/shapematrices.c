@@ -93,7 +93,7 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(LayerSelf(&stokeslet, &s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, NULL, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
   PetscCall(ShapeMotion(s, q, motion));
-  LawPlace(block.law, q->X);
+  LawPlace(block.law, s->a0, q->X);
   PetscCall(DenseBlockFactor(&block, s->a0, M, motion, good));
   for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;
   for (PetscInt j = 0; j < n; j++) sigma[(2 * n + j) * n + j] = 1;

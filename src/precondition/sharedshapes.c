@@ -60,7 +60,8 @@ static PetscBool AreAlike(Coupling c, PetscInt v, PetscInt w) {
   const Membrane m = c->membrane;
   if (c->mobility->contrast && c->mobility->contrast->ratio[v] != c->mobility->contrast->ratio[w]) return PETSC_FALSE;
   return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
-                 PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w]
+                 PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w] &&
+                 m->modulus[v] == m->modulus[w]
              ? PETSC_TRUE
              : PETSC_FALSE;
 }

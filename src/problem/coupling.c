@@ -55,7 +55,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   PetscCall(MobilityPlace(c->mobility, a0, c->X));
   if (!CouplingHasBodies(c)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(X, &x));
-  LawPlace(c->law, x);
+  LawPlace(c->law, a0, x);
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(ForcesPlace(c->forces, t, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -227,7 +227,7 @@ PetscErrorCode CouplingForces(Coupling c, PetscReal t, Vec sigma, Vec X, Vec F) 
   PetscCall(VecGetArray(F, &f));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayRead(sigma, &s));
-  LawPlace(law, x);
+  LawPlace(law, 1, x);
   LawForce(law, -1, s, f);
   PetscCall(ForcesLaw(c->forces, FORCE_WITHIN, FORCE_OUTSIDE, t, x, f));
   PetscCall(VecRestoreArrayRead(sigma, &s));

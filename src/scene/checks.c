@@ -120,6 +120,7 @@ static PetscErrorCode SceneCheckVesicleLists(Scene scene) {
   PetscCall(SceneCheckKinds(scene, "-vesicle_area", own->area.n, 1));
   PetscCall(SceneCheckKinds(scene, "-vesicle_reduced_area", own->reduced_area.n, 1));
   PetscCall(SceneCheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-membrane_stretching", scene->membrane.stretching.n, 1));
   for (PetscInt k = 0; k < own->reduced_area.n; k++)
     PetvesCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
                 scene->comm, "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9",
@@ -138,6 +139,9 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
                   paper = split || penalty, spectral = s->membrane.derivative == DERIVATIVE_SPECTRAL,
                   exact = s->coupling.near_field == NEAR_EXACT;
   const PetscInt inertia = s->fluid.inertia;
+  const PetscBool stretches = s->membrane.law != LAW_INEXTENSIBLE;
+  PetscReal modulus = 0;
+  for (PetscInt k = 0; k < s->membrane.stretching.n; k++) modulus = PetscMax(modulus, s->membrane.stretching.v[k]);
   const SceneRule rules[] = {
     {!paper && strcmp(s->fluid.helmholtz, "fftw_tridiagonal"),
      "-helmholtz_type {-helmholtz_type}: not with -scheme_type {-scheme_type}, which solves in the modes of fftw_tridiagonal; allowed: fftw_tridiagonal, or -scheme_type split or penalty"},
@@ -165,6 +169,16 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
      "-fluid_inertia convective: not with -scheme_type penalty, here for unsteady Stokes flow; allowed: unsteady, or -scheme_type coupled"},
     {!penalty && s->scheme.stiffness != 0,
      "-penalty_stiffness {-penalty_stiffness}: -scheme_type {-scheme_type} has no springs, its length is a constraint; allowed: 0, or -scheme_type penalty"},
+    {!stretches && modulus > 0,
+     "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
+    {stretches && modulus == 0,
+     "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
+    {stretches && paper,
+     "-membrane_law {-membrane_law}: not with -scheme_type {-scheme_type}, whose membranes keep their length; allowed: inextensible, or -scheme_type coupled"},
+    {stretches && !s->scheme.length_target,
+     "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"},
+    {stretches && s->scheme.wanted > 0,
+     "-scheme_auto {-scheme_auto}: -membrane_law {-membrane_law} is not among what it was measured for; allowed: 0, or -membrane_law inextensible"},
     {s->time.adapt != ADAPT_NONE && s->scheme.order == 1,
      "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with -scheme_order 2 or 3"},
     {inertia == INERTIA_CONVECTIVE && s->scheme.order == 1,

@@ -17,7 +17,7 @@ typedef struct {
   PetscInt type; /* FlowType */
   PetscReal rate, peak, half_width, center[2];
   RealList velocity;                   /* FLOW_UNIFORM: u_x, u_y */
-  PetscReal chi, ca;                   /* what the user gives in place of rate or peak */
+  PetscReal chi, ca, ca_stretching;    /* what the user gives in place of rate or peak */
   char formula[2][PETSC_MAX_PATH_LEN]; /* FLOW_FORMULA: u_x, u_y */
   PetvesFlow function;                 /* FLOW_CUSTOM: the caller's, with its context; FLOW_FORMULA: the formulas' */
   void *ctx;

@@ -4,6 +4,7 @@
 #include "scene/fluidspec.h"
 
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
+typedef enum { LAW_INEXTENSIBLE, LAW_HOOKE, LAW_GREEN, LAW_NEO_HOOKEAN } LawType;
 typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 #define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
 #define SCENE_LEAST_GAP 0.3    /* marker spacings between obstacles, down to which their forces are right */
@@ -46,6 +47,9 @@ typedef struct {
   PetscReal bending;        /* the largest c_b */
   PetscReal *each;          /* [vesicles] c_b */
   RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
+  RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
+  PetscReal *modulus;       /* [vesicles] E_s */
+  PetscInt law;             /* LawType, of all membranes that stretch */
   PetscInt derivative;      /* DerivativeType */
 } SceneMembrane;
 

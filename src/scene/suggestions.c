@@ -45,7 +45,7 @@ static const OptionSuggestion suggestions[] = {
     {"*electric *magnetic *voltage", "no electric or magnetic fields" NO},
     {"*temperature *noise *thermal *brownian", "no thermal fluctuations" NO},
     {"*spontaneous_curvature", "no spontaneous curvature, which has no effect on a closed curve in the plane" NO},
-    {"*shear_modulus *elastic", "the membrane is a fluid, inextensible and without shear elasticity" NO},
+    {"*shear_modulus *elastic *stretch", "-membrane_law and -membrane_stretching are meant?"},
     {"*surface_tension", "the tension follows from the membrane's length, which stays" NO},
     {"*permeability", "the membrane lets no fluid through" NO},
     {"*constriction *stenosis", "-obstacle_shape constriction is meant?"},

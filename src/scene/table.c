@@ -103,8 +103,8 @@ static const OptionNeed
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
 
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
-   fluid, vesicles and scheme may not, nor -output_precision, since a file goes on as it was begun. Of -flow_chi and
-   -flow_ca what they stand for is compared. */
+   fluid, vesicles and scheme may not, nor -output_precision, since a file goes on as it was begun. Of -flow_chi,
+   -flow_ca and -flow_ca_stretching what they stand for is compared. */
 #define MAY_CHANGE PETSC_TRUE
 static const OptionRow table[] = {
   {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
@@ -114,6 +114,7 @@ static const OptionRow table[] = {
   {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom|formula", "background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)", &need_strain},
   {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle", &need_strain, MAY_CHANGE},
+  {"-flow_ca_stretching", OPT_REAL, AT(flow.ca_stretching), "0", "any", "in place of -flow_rate: capillary number nu rate R0/E_s, R0 of the largest vesicle, E_s the largest -membrane_stretching", &need_strain, MAY_CHANGE},
   {"-flow_peak_velocity", OPT_REAL, AT(flow.peak), "1", "any", "u_max of poiseuille (length/time)", &need_channel},
   {"-flow_ca", OPT_REAL, AT(flow.ca), "0", "any", "in place of -flow_peak_velocity: u_max nu R0^2/c_b, the paper's w", &need_channel, MAY_CHANGE},
   {"-flow_velocity", OPT_REALS, AT(flow.velocity), "1,0", "any", "uniform: u_x,u_y (length/time)", &need_uniform},
@@ -175,6 +176,8 @@ static const OptionRow table[] = {
   {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none", &need_repulsion},
   {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D", &need_adhesion},
   {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges", &need_vesicles},
+  {"-membrane_law", OPT_ENUM, AT(membrane.law), "inextensible", "inextensible|hooke|green|neo_hookean", "coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)", &need_vesicles},
+  {"-membrane_stretching", OPT_REALS, AT(membrane.stretching), "0", ">=0", "E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)", &need_vesicles},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},
   {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)", NULL, MAY_CHANGE},
@@ -332,8 +335,8 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
      ellipse, or of the flow, would be refused when read back */
   const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool counted = SceneGiven(scene, "-vesicle_count");
-  const char *skip[9] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca"};
-  PetscInt skipped = 4;
+  const char *skip[10] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca", "-flow_ca_stretching"};
+  PetscInt skipped = 5;
   PetscFunctionBeginUser;
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */

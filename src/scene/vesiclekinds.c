@@ -94,13 +94,14 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
 }
 
 /* Set what defines an ellipse or a biconcave outline, of vesicle v. */
-static void KindGive(Scene scene, PetscInt v, PetscReal given[3]) {
+static void KindGive(Scene scene, PetscInt v, PetscReal given[4]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool by_area = SceneByArea(scene);
   const PetscInt k = SceneKindOf(scene, v);
   given[0] = by_area ? own->area_scale * ListEntry(&own->area, 1, k, 0) : ListEntry(&own->axes, 2, k, 0);
   given[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
   given[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
+  given[3] = ListEntry(&scene->membrane.stretching, 1, k, 0);
 }
 
 static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
@@ -122,6 +123,7 @@ static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
     else
       PetscCall(PetscArraycpy(next->curve.axes, given, 2));
     next->bending = given[2];
+    next->stretching = given[3];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,9 +146,12 @@ static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   PetscCall(SceneCheckList(scene, "-vesicle_angle", own->angle.n, 1, all->vesicles, "curves", "a curve"));
   PetscCall(
       SceneCheckList(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-membrane_stretching", scene->membrane.stretching.n, 1, all->vesicles, "curves",
+                           "a curve"));
   for (PetscInt k = 0; k < all->kinds; k++) {
     all->of[k] = k;
     all->kind[k].bending = ListEntry(&scene->membrane.stiffness, 1, k, 0);
+    all->kind[k].stretching = ListEntry(&scene->membrane.stretching, 1, k, 0);
     if (ListEntry(&own->angle, 1, k, 0) != 0) CurveCentroid(&all->kind[k].curve, all->kind[k].pivot);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -208,32 +213,46 @@ static PetscErrorCode KindsMix(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rate or peak velocity from -flow_chi or -flow_ca:
+/* The rate or peak velocity from -flow_chi, -flow_ca or -flow_ca_stretching:
 
-     value = number c_b/(nu R0^power),   R0 of the largest vesicle. */
-static PetscErrorCode FlowChoose(Draft scene) {
+     value = number modulus/(nu R0^power),   R0 of the largest vesicle, modulus c_b or E_s, the largest. */
+static PetscErrorCode FlowChoose(Draft scene, PetscReal stretching) {
   Flow *flow = &scene->flow;
-  const PetscBool channel = flow->type == FLOW_POISEUILLE ? PETSC_TRUE : PETSC_FALSE;
-  const char *const name = channel ? "-flow_ca" : "-flow_chi", *const stands_for = channel ? "-flow_peak_velocity"
-                                                                                           : "-flow_rate";
-  const PetscReal number = channel ? flow->ca : flow->chi, R0 = scene->shape.longest / (2 * PETSC_PI);
-  PetscReal *value = channel ? &flow->peak : &flow->rate;
+  const PetscBool channel = flow->type == FLOW_POISEUILLE,
+                  strain = flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION;
+  const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI), c_b = scene->membrane.bending;
+  const struct {
+    const char *name, *stands_for;
+    PetscBool used;
+    int power;
+    PetscReal number, modulus, *value;
+    const char *without, *needs;
+  } rows[] = {{"-flow_chi", "-flow_rate", strain, 3, flow->chi, c_b, &flow->rate,
+               "vesicles that bend there is no time nu R0^3/c_b", "vesicles with -vesicle_bending"},
+              {"-flow_ca", "-flow_peak_velocity", channel, 2, flow->ca, c_b, &flow->peak,
+               "vesicles that bend there is no time nu R0^3/c_b", "vesicles with -vesicle_bending"},
+              {"-flow_ca_stretching", "-flow_rate", strain, 1, flow->ca_stretching, stretching, &flow->rate,
+               "membranes that stretch there is no time nu R0/E_s", "vesicles with -membrane_stretching"}};
+  const char *taken = NULL;
   PetscFunctionBeginUser;
-  if (!(channel || flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) || !SceneGiven(scene, name))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetvesCheck(!SceneGiven(scene, stands_for), scene->comm, "%s %g: given together with %s; allowed: one of them", name,
-              (double)number, stands_for);
-  PetvesCheck(R0 > 0 && scene->membrane.bending > 0, scene->comm,
-              "%s %g: without vesicles that bend there is no time nu R0^3/c_b; allowed: vesicles with -vesicle_bending "
-              "above 0, or %s",
-              name, (double)number, stands_for);
-  *value = number * scene->membrane.bending / (scene->fluid.nu * PetscPowRealInt(R0, channel ? 2 : 3));
-  PetvesCheck(!PetscIsInfOrNanReal(*value), scene->comm, "%s %g: stands for a %s of %g; allowed: a finite one", name,
-              (double)number, stands_for + 1, (double)*value);
+  for (size_t k = 0; k < sizeof(rows) / sizeof(rows[0]); k++) {
+    const double number = (double)rows[k].number;
+    if (!rows[k].used || !SceneGiven(scene, rows[k].name)) continue;
+    const char *also = SceneGiven(scene, rows[k].stands_for) ? rows[k].stands_for : taken;
+    PetvesCheck(!also, scene->comm, "%s %g: given together with %s; allowed: one of them", rows[k].name, number, also);
+    PetvesCheck(R0 > 0 && rows[k].modulus > 0, scene->comm, "%s %g: without %s; allowed: %s above 0, or %s",
+                rows[k].name, number, rows[k].without, rows[k].needs, rows[k].stands_for);
+    *rows[k].value = rows[k].number * rows[k].modulus / (scene->fluid.nu * PetscPowRealInt(R0, rows[k].power));
+    PetvesCheck(!PetscIsInfOrNanReal(*rows[k].value), scene->comm,
+                "%s %g: stands for a %s of %g; allowed: a finite one", rows[k].name, number, rows[k].stands_for + 1,
+                (double)*rows[k].value);
+    taken = rows[k].name;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
+  PetscReal stretching = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(all, sizeof(*all)));
   PetscCall(KindsCountPacked(scene));
@@ -249,9 +268,10 @@ PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
     kind->length = CurveLength(&kind->curve);
     kind->area = CurveArea(&kind->curve);
     scene->membrane.bending = PetscMax(scene->membrane.bending, kind->bending);
+    stretching = PetscMax(stretching, kind->stretching);
     scene->shape.longest = PetscMax(scene->shape.longest, kind->length);
   }
-  PetscCall(FlowChoose(scene));
+  PetscCall(FlowChoose(scene, stretching));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -141,6 +141,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   if (kinds.kinds) PetscCall(PetscStrncpy(shape->digest, kinds.kind[0].curve.digest, DIGEST));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
+  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.modulus));
   PetscCall(ScenePlace(scene, &kinds, pose));
   for (PetscInt v = 0; v < kinds.vesicles; v++)
     PetscCall(VesicleCheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
@@ -149,6 +150,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
     const Kind *kind = &kinds.kind[kinds.of[v]];
     KindPlace(kind, &pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
     scene->membrane.each[v] = kind->bending;
+    scene->membrane.modulus[v] = kind->stretching;
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
@@ -161,5 +163,6 @@ PetscErrorCode SceneDropShape(Draft scene) {
   PetscCall(ShapeDestroy(&scene->shape));
   PetscCall(PetscFree(scene->vesicles.kind));
   PetscCall(PetscFree(scene->membrane.each));
+  PetscCall(PetscFree(scene->membrane.modulus));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

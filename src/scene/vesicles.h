@@ -7,8 +7,8 @@
 typedef struct {
   Curve curve;        /* about the origin, or where its file has it */
   PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
-  PetscReal given[3]; /* area and reduced area, or both semi-axes; and the bending stiffness: not of a file's curve */
-  PetscReal length, area, bending;
+  PetscReal given[4]; /* area and reduced area, or both semi-axes; bending stiffness, E_s: not of a file's curve */
+  PetscReal length, area, bending, stretching;
   PetscInt M;   /* markers, 0 before KindFit */
   PetscReal *X; /* [2M] */
 } Kind;
@@ -21,8 +21,9 @@ typedef struct {
 
 /* KindsCreate - the kinds of a scene from its options, with their curves: how many vesicles a packing takes, which
    entry of the lists each of a mixture; ellipses and outlines that are equal in all are one kind, each curve of a file
-   is one. The rate or peak velocity of the flow follows from -flow_chi or -flow_ca: rate = chi c_b/(nu R0^3), u_max =
-   Ca c_b/(nu R0^2), R0 of the largest vesicle and the largest c_b. What this leaves in the scene SceneDropShape takes.
+   is one. The rate or peak velocity of the flow follows from -flow_chi (chi c_b/(nu R0^3)), -flow_ca (Ca c_b/(nu R0^2))
+   or -flow_ca_stretching (Ca E_s/(nu R0)), R0 of the largest vesicle and the largest modulus. What this leaves in the
+   scene SceneDropShape takes.
    KindFit - the markers of a kind: their number, and equal edges. Collective; stop with the user's message on a bad
    file, list, number of markers, spacing, or a flow without vesicles that bend. */
 PETSC_EXTERN PetscErrorCode KindsCreate(Draft scene, Kinds *kinds);

@@ -126,7 +126,7 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   else
     s->report.div_max = s->report.measures.divergence;
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeMarkerVelocity(s, d->V, d->P));
+  PetscCall(SchemeMarkerVelocity(s, d->V, n->sigma, d->P));
   PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));

@@ -124,9 +124,9 @@ PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treadi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec V, Vec U) {
+PetscErrorCode SchemeMarkerVelocity(Scheme s, Vec V, Vec sigma, Vec U) {
   PetscFunctionBeginUser;
-  PetscCall(LawLargest(s->coupling->law, V, s->g, &s->report.surface_div_max));
+  PetscCall(LawLargest(s->coupling->law, V, sigma, s->g, &s->report.surface_div_max));
   if (U == V)
     PetscCall(VecAXPY(U, 1, s->background));
   else

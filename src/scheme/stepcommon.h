@@ -123,9 +123,9 @@ PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, cons
    w; report.failure where a flow of the caller's has none. Collective. */
 PETSC_EXTERN PetscErrorCode SchemeBackground(Scheme scheme, Vec X, PetscReal t);
 
-/* SchemeMarkerVelocity - U = background + V of the solved part V at the coupling's markers; measures
+/* SchemeMarkerVelocity - U = background + V of the solved part V, with sigma, at the coupling's markers; measures
    report.surface_div_max on the way. U may be V. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec V, Vec U);
+PETSC_EXTERN PetscErrorCode SchemeMarkerVelocity(Scheme scheme, Vec V, Vec sigma, Vec U);
 
 /* SchemeMeasureDivergence - fill in report.div_max of a solved velocity, whose divergence is to be `expected` (NULL:
    zero). Collective. */

@@ -37,8 +37,7 @@ static inline PetscErrorCode TestMembraneCreate(const char options[], TestMembra
   PetscCall(TestScene(options, &m->scene));
   membrane = &m->scene->membrane;
   PetscCall(LayoutCreate(PETSC_COMM_SELF, m->scene->shape.vesicles, m->scene->shape.start, NULL, &m->layout));
-  PetscCall(
-      MembraneCreate(m->layout, m->scene->shape.X, membrane->each, (DerivativeType)membrane->derivative, &m->membrane));
+  PetscCall(MembraneCreate(m->layout, m->scene->shape.X, membrane, &m->membrane));
   m->M = m->layout->M;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -71,8 +70,7 @@ static inline PetscErrorCode TestWorldBuildFor(const CouplingSetting *setting, T
   w->scheme = NULL;
   PetscCall(FluidCreate(&s->fluid, &w->fluid));
   PetscCall(LayoutCreate(s->comm, s->shape.vesicles, s->shape.start, NULL, &w->layout));
-  PetscCall(
-      MembraneCreate(w->layout, s->shape.X, s->membrane.each, (DerivativeType)s->membrane.derivative, &w->membrane));
+  PetscCall(MembraneCreate(w->layout, s->shape.X, &s->membrane, &w->membrane));
   PetscCall(CouplingCreate(w->fluid, w->membrane, NULL, setting, &w->coupling));
   PetscCall(LayoutCreateVec(w->layout, 2, &w->X));
   PetscCall(VecGetArray(w->X, &x));

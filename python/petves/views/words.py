@@ -64,14 +64,16 @@ def _short(value: str) -> str:
 def _vesicles(run: Run, o: dict[str, str]) -> str:
     if not run.vesicles:
         return "There is no vesicle."
+    law = o.get("membrane_law", "inextensible")
+    kind = "an inextensible" if law == "inextensible" else f"a stretching ({law})"
     count = "One vesicle" if run.vesicles == 1 else f"{run.vesicles} vesicles"
     if run.vesicles > MANY:
-        return f"{count} with an inextensible membrane{_ranges(run)}."
+        return f"{count} with {kind} membrane{_ranges(run)}."
     shapes = []
     for area, length, n in zip(run.each("area")[0], run.each("length")[0], np.diff(run.start)):
         shapes.append(f"area {area:.4g}, length {length:.4g}, reduced area {4*np.pi*area/length**2:.3f}, {n} markers")
     bending = f"bending stiffness {run.c_b:g}" if run.c_b > 0 else "no bending stiffness"
-    return f"{count} with an inextensible membrane and {bending}: {'; '.join(shapes)}."
+    return f"{count} with {kind} membrane and {bending}: {'; '.join(shapes)}."
 
 
 def _ranges(run: Run) -> str:

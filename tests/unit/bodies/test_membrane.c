@@ -1,6 +1,7 @@
 /* Membranes: initial shapes with equal edges, measures of exact shapes, bending and stretching operators. */
 #include "facts.h"
 #include "bodies/bending.h"
+#include "bodies/stretch.h"
 
 /* Membrane of M markers on an ellipse, turned and moved. */
 static PetscErrorCode Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, TestMembrane *m) {
@@ -199,7 +200,7 @@ static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
   PetscCall(LawCreate(m->membrane, 1, 0, 1, &law));
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
   for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
-  LawPlace(law, X);
+  LawPlace(law, 1, X);
   LawRows(law, V, sigma, d);
   for (PetscInt k = 0; k < m->M; k++) product += d[k] * sigma[k], size += PetscAbsReal(d[k] * sigma[k]);
   LawForce(law, 1, sigma, F);
@@ -222,6 +223,28 @@ static PetscErrorCode CheckStretching(const TestMembrane *m, unsigned *state) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The laws of stretching: sigma = 2 dW/dq and its derivative by q by differences, and E (lambda - 1) at small strain.
+ */
+static PetscErrorCode CheckLaws(void) {
+  static const char *const names[] = {"", "hooke", "green", "neo_hookean"};
+  PetscFunctionBeginUser;
+  for (int law = LAW_HOOKE; law <= LAW_NEO_HOOKEAN; law++) {
+    PetscReal energy = 0, slope = 0;
+    for (PetscReal q = 0.3; q < 4; q *= 1.3) {
+      const PetscReal d = 1e-5 * q;
+      const Stretch at = StretchOf((LawType)law, q), up = StretchOf((LawType)law, q + d),
+                    down = StretchOf((LawType)law, q - d);
+      energy = PetscMax(energy, PetscAbsReal((up.energy - down.energy) / d - at.sigma));
+      slope = PetscMax(slope, PetscAbsReal((up.sigma - down.sigma) / (2 * d) - at.slope));
+    }
+    CHECK(energy < 1e-8, "%s: sigma is twice the derivative of the energy by q, error %.1e", names[law], energy);
+    CHECK(slope < 1e-8, "%s: the slope of sigma, error %.1e", names[law], slope);
+    const Stretch small = StretchOf((LawType)law, PetscSqr(1 + 1e-6));
+    CHECK(PetscAbsReal(small.sigma * (1 + 1e-6) / 1e-6 - 1) < 2e-6, "%s: tension at small strain", names[law]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckOperators(void) {
   TestMembrane m;
   unsigned state = 5;
@@ -229,6 +252,7 @@ static PetscErrorCode CheckOperators(void) {
   PetscCall(Ellipse(48, 0.6, 0.25, 17, &m));
   PetscCall(CheckBending(&m, &state));
   PetscCall(CheckStretching(&m, &state));
+  PetscCall(CheckLaws());
   PetscCall(TestMembraneDestroy(&m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -232,7 +232,7 @@ static PetscErrorCode Inextensible(const TestWorld *w, PetscReal Q[]) {
   MembraneLaw law;
   PetscFunctionBeginUser;
   PetscCall(LawCreate(w->membrane, 1, 0, 1, &law));
-  LawPlace(law, w->coupling->markers->X);
+  LawPlace(law, 1, w->coupling->markers->X);
   PetscCall(PetscMalloc3(rows * n, &A, n, &l, n, &U));
   PetscCall(PetscArrayzero(U, n));
   for (PetscInt k = 0; k < n; k++) {

@@ -148,7 +148,7 @@ static PetscErrorCode NearCreate(const char derivative[], Near *q) {
     q->sigma[k / 2] = TestRandom(&seed);
   }
   PetscCall(LawCreate(m, 1, 0, 1, &q->law));
-  LawPlace(q->law, q->X);
+  LawPlace(q->law, 1, q->X);
   LawRows(q->law, q->U, q->sigma, q->d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

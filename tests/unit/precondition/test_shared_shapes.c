@@ -135,7 +135,7 @@ static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], 
   PetscCall(PetscMalloc1(4 * N * N, &S));
   PetscCall(LayerSelf(&stokeslet, &t->coupling->mobility->near->set, m->spectral[v], N, X, NULL, S));
   PetscCall(LawCreate(m, t->fluid->grid->h, v, v + 1, &law));
-  LawPlace(law, X);
+  LawPlace(law, 1, X);
   LawForce(law, 1, sigma, F);
   MembraneVesicleBending(m, v, m->bending / t->fluid->a0, V, F);
   for (PetscInt i = 0; i < 2 * N; i++) {

@@ -1,0 +1,128 @@
+"""Membranes that stretch: capsules in shear of two boundary integrals, the stiff limit, energy, ranks, restarts."""
+
+import math
+
+import numpy as np
+import pytest
+from harness import REFERENCES, run_petves
+from restarts import agree
+
+from petves.measures import deformation
+
+CAPSULES = REFERENCES["capsules"]
+FREE = "-domain_bc_x free -domain_bc_y free -domain_cells 32,32 -domain_box -4,4,-4,4 -output_every 1e9"
+CIRCLE = f"{FREE} -flow_type shear -vesicle_semi_axes 1,1 -vesicle_bending 0 -time_step 0.05"
+ELLIPSE = f"{FREE} -vesicle_area {0.7 * math.pi!r} -vesicle_reduced_area 0.7 -vesicle_bending 0.1"
+FINE = "-vesicle_markers 65 -domain_cells 64,64 -time_step 0.025"
+TWO = "-domain_box -3,3,-3,3 -domain_cells 32,32 -flow_type shear -vesicle_count 2 -vesicle_center -1.2,.3,1.2,-.3"
+TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -time_step .05"
+CASES = [(law, Ca) for law in ("hooke", "green", "neo_hookean") for Ca in CAPSULES[law]]
+
+
+def deformed(run) -> float:
+    return deformation(run.saved("vesicle/markers"))
+
+
+def angle(run) -> float:
+    return run.series["inclination"][-1] / math.pi
+
+
+def stretched(law: str, modulus: float) -> str:
+    return f"-membrane_law {law} -membrane_stretching {modulus!r}"
+
+
+@pytest.mark.parametrize(("law", "Ca"), CASES)
+def test_steady_capsules(tmp_path, law, Ca):
+    """Deformation to 2e-5, angle, frequency and length of the boundary integrals, to their digits."""
+    end = 14 if float(Ca) < 0.1 else 24
+    run = run_petves(tmp_path, f"{CIRCLE} {stretched(law, 1 / float(Ca))} -time_end {end}")
+    D, theta, turns, length = CAPSULES[law][Ca]
+    last = {name: values[-1] for name, values in run.series.items()}
+    assert deformed(run) == pytest.approx(D, abs=2e-5)
+    assert angle(run) == pytest.approx(theta, abs=6e-5)
+    assert last["frequency"] / (2 * math.pi) == pytest.approx(turns, abs=1.5e-5)
+    assert last["length"] / (2 * math.pi) == pytest.approx(length, abs=6e-5)
+    assert abs(last["area_error"]) < 1e-12
+    assert run.series["coupled_its"][6:].mean() < 3
+
+
+def test_transient_is_of_the_order_of_the_scheme(tmp_path):
+    """D at t = 4 of the explicit boundary integral; order 2 gains 4 by half the step, order 3 has 1e-6 at dt = .05."""
+    for Ca, (D, theta) in CAPSULES["hooke_transient"].items():
+        run = run_petves(tmp_path / Ca, f"{CIRCLE} {stretched('hooke', 1 / float(Ca))} {FINE} -time_end 4")
+        assert deformed(run) == pytest.approx(D, abs=1e-5)
+        assert angle(run) == pytest.approx(theta, abs=1e-5)
+    capsule = f"{CIRCLE} {stretched('hooke', 10.0)} -coupled_ksp_rtol 1e-12 -time_end 1"
+    errors = {}
+    fine = deformed(run_petves(tmp_path / "fine", f"{capsule} -time_step {1 / 320}"))
+    for order, steps in ((2, 20), (2, 40), (3, 20), (3, 80)):
+        options = f"{capsule} -scheme_order {order} -time_step {1 / steps}"
+        errors[order, steps] = abs(deformed(run_petves(tmp_path / f"{order}.{steps}", options)) - fine)
+    assert errors[2, 20] > 3.8 * errors[2, 40]
+    assert errors[3, 20] < 2e-6 and errors[3, 80] < 1e-7
+
+
+def test_small_capillary_number(tmp_path):
+    """Ca = 1e-4, steps of 100 times its own time: D sqrt((3 D^2/(8 Ca))^2 + 1) = 1/2, the limit without bending."""
+    run = run_petves(tmp_path, f"{CIRCLE} {stretched('hooke', 1e4)} -time_step 0.1 -time_end 60")
+    D = deformed(run)
+    assert D * math.hypot(3 * D**2 / 8e-4, 1) == pytest.approx(0.5, rel=0.01)
+    assert pytest.approx(0.050998, rel=0.005) == D
+
+
+def test_box_contrast_and_number(tmp_path):
+    """Images of a periodic box of 20 on 64^2; a viscosity ratio of 5 on its way; -flow_ca_stretching is the rate."""
+    box = (
+        "-domain_bc_x periodic -domain_bc_y periodic -domain_box -10,10,-10,10 -domain_cells 64,64 -fluid_inertia none"
+    )
+    run = run_petves(tmp_path / "box", f"{CIRCLE} {box} {stretched('hooke', 10.0)} -time_end 10")
+    assert deformed(run) == pytest.approx(CAPSULES["box_of_20"], abs=2e-4)
+    ratio = f"{CIRCLE} {stretched('hooke', 10.0)} -vesicle_viscosity_ratio 5 -time_end 15"
+    run = run_petves(tmp_path / "ratio", ratio)
+    assert [deformed(run), angle(run)] == pytest.approx(CAPSULES["ratio_5_at_15"], abs=2e-6)
+    same = run_petves(tmp_path / "ca", f"{ratio} -flow_ca_stretching 0.1")
+    assert deformed(same) == deformed(run)
+
+
+@pytest.mark.parametrize("law", ["hooke", "green"])
+def test_stiff_membranes_are_inextensible(tmp_path, law):
+    """V = .7: angle and frequency of the boundary integral; at E_s = 1e5 those of an inextensible one within 2e-5."""
+    scene = f"{ELLIPSE} -flow_type shear -time_step 0.05 -time_end 20"
+    found = {}
+    for modulus in (1e3, 1e5):
+        run = run_petves(tmp_path / str(modulus), f"{scene} {stretched(law, modulus)}")
+        found[modulus] = np.array([angle(run), run.series["frequency"][-1]])
+    plain = run_petves(tmp_path / "plain", scene)
+    limit = np.array([angle(plain), plain.series["frequency"][-1]])
+    assert limit == pytest.approx(CAPSULES["vesicle"]["infinity"], rel=2e-5)
+    assert found[1e3] == pytest.approx(CAPSULES["vesicle"]["1000"], rel=5e-5)
+    assert found[1e5] == pytest.approx(limit, abs=2e-5)
+    assert found[1e5] - limit == pytest.approx((found[1e3] - limit) / 100, rel=0.02)  # first order in 1/E_s
+
+
+@pytest.mark.parametrize(("modulus", "step"), [(1, 0.01), (1, 0.3), (100, 0.01), (100, 10), (1e4, 0.3), (1e4, 1000)])
+def test_relaxing_never_gains_energy(tmp_path, modulus, step):
+    """Bending and stretching together, of a fluid at rest, by steps up to 1e7 of the membrane's own time."""
+    options = f"{ELLIPSE} {stretched('hooke', float(modulus))} -time_step {step} -time_end {40 * step}"
+    series = run_petves(tmp_path, options).series
+    energy = series["energy_bending"] + series["energy_stretching"]
+    assert np.all(np.diff(energy) < 1e-9 * energy[0]) and energy[-1] < 0.9 * energy[0]
+
+
+def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
+    """Of a deformed capsule: E_s/2 (L - 1)^2 a length at rest, and T = E_s (L - 1), by its own markers."""
+    run = run_petves(tmp_path, f"{CIRCLE} {stretched('hooke', 10.0)} -time_end 8")
+    X, tension = run.saved("vesicle/markers", "run.h5")[-1], run.saved("vesicle/tension", "run.h5")[-1]
+    z = X[:, 0] + 1j * X[:, 1]
+    wave = 1j * np.fft.fftfreq(len(z), 1 / len(z))
+    stretch = abs(np.fft.ifft(wave * np.fft.fft(z)))  # the radius is 1
+    assert run.series["energy_stretching"][-1] == pytest.approx(10 * math.pi * np.mean((stretch - 1) ** 2), rel=1e-10)
+    assert tension == pytest.approx(10 * (stretch - 1), abs=2e-4)
+
+
+def test_ranks_restart_and_mixtures(tmp_path):
+    """Two vesicles, one that stretches and one that does not, with contrast."""
+    names = ("center_x_1", "inclination_2", "length_1", "energy_stretching", "coupled_its")
+    found = agree(tmp_path, f"{TWO} -membrane_stretching 2,0", 0.2, 0.4, names)
+    errors = [abs(found["whole"].series[f"length_error_{v}"]).max() for v in (1, 2)]
+    assert errors[0] > 1e-3 and errors[1] < 1e-7
