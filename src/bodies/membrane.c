@@ -11,6 +11,16 @@ static PetscReal ArcLength(Membrane m, PetscInt v, const PetscScalar X[]) {
   return length;
 }
 
+/* Curvature of one vesicle's curve of equal edges at its markers. */
+static void MembraneCurvature(Membrane m, PetscInt v, const PetscScalar X[], PetscReal kappa[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *slope = m->work.memory, *second = slope + 2 * n;
+  (void)PetscArrayzero(slope, 4 * n);
+  SpectralDerivative(m->spectral[v], 1, n / m->arc[v], X, slope);
+  SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, second);
+  for (PetscInt k = 0; k < 2 * n; k += 2) kappa[k / 2] = slope[k] * second[k + 1] - slope[k + 1] * second[k];
+}
+
 PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given, Membrane *out) {
   const PetscReal *bending = given->each;
   const PetscInt vesicles = layout->bodies;
@@ -29,6 +39,8 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
                          &m->arc, vesicles, &m->part, vesicles, &m->modulus));
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
                          2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
+  PetscCall(PetscMalloc1(4 * layout->M, &w->memory));
+  if (given->memory) PetscCall(PetscMalloc1(layout->M, &m->memory));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
     Measures measures;
@@ -39,6 +51,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
     m->L0[v] = measures.length;
     m->ds[v] = measures.length / n;
     m->modulus[v] = given->modulus[v];
+    if (m->memory) MembraneCurvature(m, v, X + 2 * layout->start[v], m->memory + layout->start[v]);
     m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -50,6 +63,8 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
   PetscCall(PetscFree7(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part, m->modulus));
+  PetscCall(PetscFree(m->work.memory));
+  PetscCall(PetscFree(m->memory));
   PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));
   PetscCall(PetscFree(*membrane));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -15,6 +15,7 @@
 /* Work arrays [2 M]. Each belongs to one group of functions, so that functions that call one another share none. */
 typedef struct {
   PetscScalar *stretching, *bending, *measures, *restore, *treading;
+  PetscScalar *memory; /* [4 M] */
 } MembraneWork;
 
 typedef struct _p_Membrane *Membrane;
@@ -26,6 +27,7 @@ struct _p_Membrane {
   PetscReal *part;    /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
   LawType law;        /* of the membranes that stretch */
   PetscReal *modulus; /* [vesicles] E_s (length^3/time^2); 0 of inextensible ones */
+  PetscReal *memory;  /* [M] curvature that bending prefers (1/length); NULL: none */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */

@@ -175,6 +175,8 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
      "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
     {stretches && paper,
      "-membrane_law {-membrane_law}: not with -scheme_type {-scheme_type}, whose membranes keep their length; allowed: inextensible, or -scheme_type coupled"},
+    {s->membrane.memory && (paper || s->membrane.derivative == DERIVATIVE_FD),
+     "-membrane_memory true: needs -scheme_type coupled and curvatures by -membrane_derivative spectral or bending; allowed: false, or these"},
     {stretches && !s->scheme.length_target,
      "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"},
     {stretches && s->scheme.wanted > 0,

@@ -50,6 +50,7 @@ typedef struct {
   RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
   PetscReal *modulus;       /* [vesicles] E_s */
   PetscInt law;             /* LawType, of all membranes that stretch */
+  PetscBool memory;         /* bending prefers the initial shape's curvature */
   PetscInt derivative;      /* DerivativeType */
 } SceneMembrane;
 

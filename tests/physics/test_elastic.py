@@ -15,7 +15,7 @@ CIRCLE = f"{FREE} -flow_type shear -vesicle_semi_axes 1,1 -vesicle_bending 0 -ti
 ELLIPSE = f"{FREE} -vesicle_area {0.7 * math.pi!r} -vesicle_reduced_area 0.7 -vesicle_bending 0.1"
 FINE = "-vesicle_markers 65 -domain_cells 64,64 -time_step 0.025"
 TWO = "-domain_box -3,3,-3,3 -domain_cells 32,32 -flow_type shear -vesicle_count 2 -vesicle_center -1.2,.3,1.2,-.3"
-TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -time_step .05"
+TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -membrane_memory true -time_step .05"
 CASES = [(law, Ca) for law in ("hooke", "green", "neo_hookean") for Ca in CAPSULES[law]]
 
 
@@ -118,6 +118,26 @@ def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
     stretch = abs(np.fft.ifft(wave * np.fft.fft(z)))  # the radius is 1
     assert run.series["energy_stretching"][-1] == pytest.approx(10 * math.pi * np.mean((stretch - 1) ** 2), rel=1e-10)
     assert tension == pytest.approx(10 * (stretch - 1), abs=2e-4)
+
+
+@pytest.mark.parametrize("step", [0.02, 1, 100])
+def test_memory_keeps_the_shape(tmp_path, step):
+    """An ellipse that remembers its curvature stays, by steps of any size, to what its markers resolve; no step gains energy."""
+    options = f"{ELLIPSE} -membrane_memory true -time_step {step} -time_end {20 * step}"
+    run = run_petves(tmp_path, options)
+    assert deformed(run) == pytest.approx(0.46881, abs=5e-5)
+    assert np.diff(run.series["energy_bending"]).max() < 1e-9
+
+
+def test_memory_swings_and_tumbles(tmp_path):
+    """V = .7 in shear: angles over pi between which it swings, of a dense prototype in unbounded fluid; c_b = 1 tumbles."""
+    scene = f"{ELLIPSE} -flow_type shear -membrane_memory true -time_step 0.05"
+    for bending, between in (("0.1", (0.104, 0.139)), ("0.3", (0.050, 0.166))):
+        run = run_petves(tmp_path / bending, f"{scene} -vesicle_bending {bending} -time_end 40")
+        angles = run.series["inclination"][400:] / math.pi
+        assert [angles.min(), angles.max()] == pytest.approx(between, abs=1e-3)
+    angles = run_petves(tmp_path / "1", f"{scene} -vesicle_bending 1 -time_end 20").series["inclination"] / math.pi
+    assert angles.min() < -0.45 and angles.max() > 0.45
 
 
 def test_ranks_restart_and_mixtures(tmp_path):

@@ -254,6 +254,17 @@ static PetscErrorCode CheckOperators(void) {
   PetscCall(CheckStretching(&m, &state));
   PetscCall(CheckLaws());
   PetscCall(TestMembraneDestroy(&m));
+  PetscCall(
+      TestMembraneCreate("-domain_box -8,8,-8,8 -domain_cells 800,800 -vesicle_semi_axes 0.6,0.25 -vesicle_angle 17 "
+                         "-vesicle_markers 63 -vesicle_bending 0.3 -vesicle_allow_close_markers "
+                         "-membrane_memory true -scheme_type coupled -membrane_derivative spectral",
+                         &m));
+  PetscCall(CheckBending(&m, &state));
+  const PetscReal rest = MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X);
+  PetscCall(PetscFree(m.membrane->memory));
+  const PetscReal plain = MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X);
+  CHECK(rest < 1e-6 * plain, "the remembered shape has no energy, %.1e of that without memory", rest / plain);
+  PetscCall(TestMembraneDestroy(&m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
