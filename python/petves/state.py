@@ -28,7 +28,8 @@ class State(Measures):
         if not getattr(self, "_in_force", None):
             return "<petves.Simulation>"
         o, count = self._in_force, self.vesicles
-        flow = {"quiescent": "fluid at rest", "custom": "a flow of the caller's"}.get(o["flow_type"], o["flow_type"])
+        said = {"quiescent": "fluid at rest", "custom": "a flow of the caller's", "formula": "a flow by formulas"}
+        flow = said.get(o["flow_type"], o["flow_type"])
         cells, sides = o["domain_cells"].replace(",", " x "), f"{o['domain_bc_x']} in x, {o['domain_bc_y']} in y"
         vesicles = f"{count or 'no'} vesicle{'s' * (count != 1)}"
         time = "closed" if not self._handle else f"t = {self.time:.4g} of {float(o['time_end']):.4g}"
