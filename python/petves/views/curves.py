@@ -25,7 +25,8 @@ def spelled(text: str) -> str:
 
 
 def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, path: Path, look: Look) -> Path:
-    """Draw panels one above the other over one x; the labels of the first are the legend of all."""
+    """Draw panels one above the other over one x; labels stand over the first panel that has them."""
+    told: list[str] = [""]
     figure, axes = new_figure(6, 1.0 + 1.7 * len(panels), rows=len(panels), look=look)
     for panel, (name, units, curves) in zip(axes, panels):
         for k, (label, values) in enumerate(curves):
@@ -33,10 +34,11 @@ def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, path: Path, loo
             panel.plot(x, values, label=label, **many)
         dress(panel, ylabel=f"{name}\n({spelled(units)})" if units not in ("", "1") else name, xlim=(x[0], x[-1]))
         panel.yaxis.label.set_size(9)
+        if 1 < len(curves) <= MANY and told != [label for label, _ in curves]:
+            told = [label for label, _ in curves]
+            legend_above(panel, columns=4)
     axes[-1].set_xlabel(xlabel)
     figure.align_ylabels(axes)
-    if 1 < len(panels[0][2]) <= MANY:
-        legend_above(axes[0], columns=4)
     return save_figure(figure, path, look)
 
 
