@@ -34,9 +34,7 @@ def _add_look(command: argparse.ArgumentParser, *names: str) -> None:
         "dpi": dict(type=float, default=120, help="dots an inch (120)"),
         "width": dict(type=float, metavar="INCHES", help="width of each picture; letters keep their size"),
         "cmap": dict(metavar="NAME", help="matplotlib's colour map of the speed (viridis)"),
-        "follow": dict(
-            type=int, nargs="?", const=1, metavar="VESICLE", help="go along with a vesicle (1) in a periodic box"
-        ),
+        "follow": dict(type=int, nargs="?", const=1, metavar="VESICLE", help="follow a vesicle (1) in a periodic box"),
     }
     for name in names:
         command.add_argument(f"--{name}", **known[name])

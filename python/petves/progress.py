@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-from typing import Any, Callable, Iterator
+from typing import Callable, Iterator
 
 
 @contextlib.contextmanager
-def progress_bar(
-    end: float, begin: float = 0.0, show: bool | None = None, unit: str = ""
-) -> Iterator[Callable[[float], Any]]:
+def progress_bar(end: float, begin: float = 0.0, show: bool | None = None, unit: str = "") -> Iterator[Callable]:
     """Show how far a quantity has come from `begin` to `end`, on standard error: ``bar(value)`` moves it.
 
     Without `show` it is shown if standard error is a terminal. `unit` is what is counted, "" for time.

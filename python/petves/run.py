@@ -30,7 +30,6 @@ COLUMNS = (
     " bending_its coupled_its"
 ).split()
 
-
 #: What energies there are, as in the columns energy_NAME.
 ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching")
 
@@ -121,9 +120,8 @@ class Run:
         missing = [name for name in COLUMNS if name not in series]
         if missing:
             raise RunError(f"{folder / 'series.csv'}: has no column {missing[0]}")
-        return cls(
-            folder=folder, series=series, summary=read_file(summary, read_summary) if summary.exists() else {}, **frames
-        )
+        ended = read_file(summary, read_summary) if summary.exists() else {}
+        return cls(folder=folder, series=series, summary=ended, **frames)
 
     @property
     def vesicles(self) -> int:

@@ -45,24 +45,23 @@ def _need(good: bool | np.bool_, what: str) -> None:
 
 
 def read_h5(path: Path, read: Callable[[h5py.File], T]) -> T:
-    """Return what `read` makes of an HDF5 file, whose data must all be in the file itself."""
+    """Return what `read` makes of an HDF5 file, whose data must all be in the file itself.
+
+    It is opened without a lock, since the run may be going on; as this process has it open already, if it has.
+    """
 
     def inside(path: Path) -> T:
-        with _open(path) as file:
+        try:
+            file = h5py.File(path, "r", locking=False)
+        except OSError as error:
+            if "locking flag" not in str(error):
+                raise
+            file = h5py.File(path, "r")
+        with file:
             _check_own(file)
             return read(file)
 
     return read_file(path, inside, "; of a killed run, -restart makes it anew")
-
-
-def _open(path: Path) -> h5py.File:
-    """Open a file without a lock, since the run may be going on; as this process has it open already, if it has."""
-    try:
-        return h5py.File(path, "r", locking=False)
-    except OSError as error:
-        if "locking flag" not in str(error):
-            raise
-        return h5py.File(path, "r")
 
 
 def _check_own(file: h5py.File) -> None:

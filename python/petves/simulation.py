@@ -259,6 +259,8 @@ class Simulation(State):
     ) -> str:
         """Step to a time, the steady state of ``time_steady_tol``, or where the callback says so.
 
+        Returns why it stopped: "finished", "steady", "stopped" (``time_wall_limit``) or "callback".
+
         Parameters
         ----------
         until : float, optional
@@ -273,11 +275,6 @@ class Simulation(State):
             Show a progress bar; when left out, if standard error is a terminal.
         live : bool
             Draw membranes, bending energy and inclination in a notebook, anew every second.
-
-        Returns
-        -------
-        str
-            Why it stopped: "finished", "steady", "stopped" (``time_wall_limit``) or "callback".
 
         Raises
         ------

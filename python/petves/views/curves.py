@@ -104,8 +104,7 @@ def plot_walls(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "walls
         for side, stress in found.items():
             if along in stress.dims:
                 panel.plot(stress[along], stress, "--" if side in ("top", "right") else "-", label=side)
-        names = dict(xlabel=f"${along}$ (length)", ylabel=f"wall shear stress\n({spelled(unit('p'))})")
-        dress(panel, **names)
+        dress(panel, xlabel=f"${along}$ (length)", ylabel=f"wall shear stress\n({spelled(unit('p'))})")
         legend_above(panel)
     axes[0].set_title(f"$t$ = {run.time[frame]:.4g}", loc="right", fontsize=10)
     return save_figure(figure, run.folder / name, look)

@@ -31,26 +31,20 @@ class FieldKind:
     values: Callable[[Window], np.ndarray]
     label: str
     cmap: str
-    line: str
-    signed: bool
+    line: str = "black"
+    signed: bool = True
 
 
 FIELDS = {
-    "pressure": FieldKind(lambda w: w.fields()[2], "pressure $p$ (length$^2$/time$^2$)", "RdBu_r", "black", True),
+    "pressure": FieldKind(lambda w: w.fields()[2], "pressure $p$ (length$^2$/time$^2$)", "RdBu_r"),
     "pressure_deviation": FieldKind(
-        lambda w: w.fields()[2] - w.mean_pressure(),
-        "$p$ less mean gradient (length$^2$/time$^2$)",
-        "RdBu_r",
-        "black",
-        True,
+        lambda w: w.fields()[2] - w.mean_pressure(), "$p$ less mean gradient (length$^2$/time$^2$)", "RdBu_r"
     ),
     "speed": FieldKind(
         lambda w: np.hypot(*w.fields()[:2]), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
     ),
-    "vorticity": FieldKind(Window.vorticity, r"vorticity $\omega$ (1/time)", "PuOr_r", "black", True),
-    "stream_function": FieldKind(
-        Window.stream_function, r"stream function $\psi$ (length$^2$/time)", "PRGn", "black", True
-    ),
+    "vorticity": FieldKind(Window.vorticity, r"vorticity $\omega$ (1/time)", "PuOr_r"),
+    "stream_function": FieldKind(Window.stream_function, r"stream function $\psi$ (length$^2$/time)", "PRGn"),
 }
 TENSION = r"tension $\sigma$ (length$^3$/time$^2$)"
 

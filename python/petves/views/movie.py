@@ -98,9 +98,8 @@ def _film(
     limits = (run.tension[frames].min(), run.tension[frames].max()) if run.vesicles else (0.0, 1.0)
     sheet = box_sheet(windows[0], replace(look, width=width / DOTS), panels=1, last=run.vesicles > 0)
     (panel,), figure = sheet.panels, sheet.figure
-    figure.set_size_inches(
-        2 * np.round(figure.get_size_inches() * DOTS / 2) / DOTS
-    )  # films have even numbers of pixels
+    # films have even numbers of pixels
+    figure.set_size_inches(2 * np.round(figure.get_size_inches() * DOTS / 2) / DOTS)
     if path.suffix == ".mp4":
         writer = FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
     else:

@@ -10,7 +10,7 @@ import numpy as np
 from petves.run import Run, RunError
 from petves.views.curves import plot_columns, plot_line, plot_points, plot_walls
 from petves.views.field import FIELDS, OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
-from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look, Sheet
+from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look
 from petves.views.figures import dress, legend_above, new_figure, new_sheet, save_figure
 from petves.views.window import Window
 
@@ -221,16 +221,6 @@ def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, f
             axes.plot(*points.T, ":", color=color, lw=1.0, zorder=OVER_STREAMS)
 
 
-def _left_the_box(run: Run) -> bool:
-    """Return whether a membrane reaches over a periodic side of the box at a saved time."""
-    if not run.markers.size:
-        return False
-    low, high = run.markers.min(axis=(0, 1)), run.markers.max(axis=(0, 1))
-    return any(
-        period > 0 and (low[d] < run.box[2 * d] or high[d] > run.box[2 * d + 1]) for d, period in enumerate(run.periods)
-    )
-
-
 def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     """Draw outlines at evenly spread saved times in the colours of time, with marker 0 as a dot.
 
@@ -242,16 +232,24 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
 
     if run.vesicles > MANY:
         return _plot_first_and_last(run, look)
-    whole = look.follow is None and (bool(run.obstacles) or _left_the_box(run))
+    low, high = run.markers.min(axis=(0, 1)), run.markers.max(axis=(0, 1))
+    left = np.any(((low < run.box[::2]) | (high > run.box[1::2])) & (np.array(run.periods) > 0))
+    whole = look.follow is None and (bool(run.obstacles) or left)
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
-    sheet, limits = _sheet_of_shapes(run, frames, whole, look)
+    limits = run.box
+    if not whole:
+        windows = [Window(run, frame, look.follow) for frame in frames]
+        points = np.vstack([image for w in windows for v in range(run.vesicles) for image in w.images(v)])
+        margin = 0.08 * np.ptp(points, axis=0).max()
+        limits = np.ravel([points.min(axis=0) - margin, points.max(axis=0) + margin], "F")
+    sheet = new_sheet(*(limits[1::2] - limits[::2]), panels=1, look=look)
     for frame, color in zip(frames, colors):
         draw_outlines(sheet.panels[0], run, frame, color, "-", look.follow)
     if look.follow is None:  # seen from a vesicle they are elsewhere at each time
         draw_solids(sheet.panels[0], Window(run, -1))
-    names = dict(xlabel="$x$ (length)", ylabel="$y$ (length)", xlim=limits[:2], ylim=limits[2:])
-    dress(sheet.panels[0], aspect="equal", **names)
+    dress(sheet.panels[0], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
+    sheet.panels[0].set(xlim=limits[:2], ylim=limits[2:])
     scale = ScalarMappable(
         BoundaryNorm(np.arange(len(frames) + 1), len(frames)), matplotlib.colors.ListedColormap(colors)
     )
@@ -260,18 +258,6 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     bar = sheet.figure.colorbar(scale, cax=sheet.bars[0], label="time $t$", ticks=ticks, orientation="horizontal")
     bar.set_ticklabels([f"{run.time[frame]:.4g}" for frame in frames[::-each][::-1]])
     return save_figure(sheet.figure, run.folder / "shapes.png", look)
-
-
-def _sheet_of_shapes(run: Run, frames: np.ndarray, whole: bool, look: Look) -> tuple[Sheet, np.ndarray]:
-    """Return a sheet with one panel, and its limits: the box, or what the outlines of these frames take."""
-    if whole:
-        return box_sheet(Window(run, 0), look, panels=1), run.box
-    windows = [Window(run, frame, look.follow) for frame in frames]
-    points = np.vstack([image for w in windows for v in range(run.vesicles) for image in w.images(v)])
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = 0.08 * np.max(high - low)
-    low, high = low - margin, high + margin
-    return new_sheet(*(high - low), panels=1, look=look), np.array([low[0], high[0], low[1], high[1]])
 
 
 def _plot_first_and_last(run: Run, look: Look) -> Path:
@@ -285,8 +271,10 @@ def _plot_first_and_last(run: Run, look: Look) -> Path:
         sheet.last.legend(handles=patches, loc="center", ncols=columns, frameon=False, fontsize=LEGEND)
     for panel, frame in zip(sheet.panels, (0, -1)):
         draw_members(panel, run, frame, look.follow)
-        draw_solids(panel, Window(run, frame, look.follow))
-        limits = Window(run, frame, look.follow).limits
-        panel.set(xlim=limits[:2], ylim=limits[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
+        window = Window(run, frame, look.follow)
+        draw_solids(panel, window)
+        panel.set(
+            xlim=window.limits[:2], ylim=window.limits[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)"
+        )
         panel.set_title(f"$t$ = {run.time[frame]:.4g}", fontsize=10)
     return save_figure(sheet.figure, run.folder / "shapes.png", look)

@@ -47,7 +47,6 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         When the run cannot be read.
     """
     run = Run.read(folder)
-    options = run.options()
     told = read_file(run.folder / "resolved.opts", lambda _: (key_numbers(run), scene_in_words(run)))
     rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in told[0])
     words = "".join(f"<p>{escape(text)}</p>" for text in told[1])
@@ -59,7 +58,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "NUMBERS": rows,
         "NOTE": f"{membranes}The colours of the fluid span the range of each time.",
         "PLOTS": _plots(run),
-        "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in options.items())),
+        "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in run.options().items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
     }
     path = Path(output) if output else run.folder / "report.html"
@@ -88,6 +87,8 @@ def _plots(run: Run) -> str:
 
 def _data(run: Run) -> dict[str, Any]:
     """Return what the page draws: outlines, tension and fields of at most FRAMES saved times."""
+    from matplotlib import colormaps
+
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(FRAMES, len(run.time))).round().astype(int))
     digits = 5 - int(np.floor(np.log10(run.box[1] - run.box[0])))
     raw = [Window(run, frame).fields() for frame in frames]
@@ -113,7 +114,9 @@ def _data(run: Run) -> dict[str, Any]:
             "speed": _field(speed, False, "viridis", "speed (length/time)"),
             "pressure": _field(pressure, True, "RdBu_r", "pressure (length²/time²)"),
         },
-        "colours": {name: _colours(name) for name in ("viridis", "RdBu_r", "plasma")},
+        "colours": {
+            name: _bytes(255 * colormaps[name](np.arange(256))[:, :3]) for name in ("viridis", "RdBu_r", "plasma")
+        },
     }
 
 
@@ -125,25 +128,17 @@ def coarsen(values: np.ndarray) -> np.ndarray:
     return padded.reshape(ny, block, nx, block).mean(axis=(1, 3))
 
 
+def _bytes(values: np.ndarray) -> str:
+    """Return numbers from 0 to 255 as text, a byte each."""
+    return base64.b64encode(np.clip(np.round(values), 0, 255).astype(np.uint8).tobytes()).decode()
+
+
 def _field(values: np.ndarray, signed: bool, colours: str, label: str) -> dict[str, Any]:
     """Return a field of all frames in eight bits, each frame over its own range, from minus to plus if `signed`."""
     high = np.abs(values).max(axis=(1, 2))
     high[high == 0] = 1.0
     low = -high if signed else 0 * high
     share = (values - low[:, None, None]) / (high - low)[:, None, None]
-    scaled = np.clip(np.round(255 * share), 0, 255).astype(np.uint8)
-    text = base64.b64encode(scaled.tobytes()).decode()
     shape = [int(n) for n in values.shape[1:]]
-    return {"values": text, "shape": shape, **_ends(low, high), "colours": colours, "label": label}
-
-
-def _ends(low: np.ndarray, high: np.ndarray) -> dict[str, list[float]]:
-    return {name: [float(f"{x:.4g}") for x in values] for name, values in (("low", low), ("high", high))}
-
-
-def _colours(name: str) -> str:
-    """Return matplotlib's colours, 256 of three bytes."""
-    import matplotlib
-
-    table = matplotlib.colormaps[name](np.arange(256))[:, :3]
-    return base64.b64encode((255 * table).round().astype(np.uint8).tobytes()).decode()
+    ends = {name: [float(f"{x:.4g}") for x in limit] for name, limit in (("low", low), ("high", high))}
+    return {"values": _bytes(255 * share), "shape": shape, **ends, "colours": colours, "label": label}

@@ -48,9 +48,8 @@ def _solids(run: Run, o: dict[str, str]) -> str:
     kinds = " or ".join(dict.fromkeys(names[kind] for kind in run.obstacle_kinds))
     moving = " They move and turn as prescribed." if o.get("obstacle_moving") == "true" else ""
     kept = {"flux": " The flux through the box is kept.", "pressure": " The mean pressure gradient is kept."}
-    return f"Solid bodies: {len(run.obstacles)}, {kinds}.{moving}" + (
-        kept[o.get("flow_drive", "pressure")] if run.periods[0] else ""
-    )
+    driven = kept[o.get("flow_drive", "pressure")] if run.periods[0] else ""
+    return f"Solid bodies: {len(run.obstacles)}, {kinds}.{moving}{driven}"
 
 
 def _short(value: str) -> str:
@@ -68,23 +67,16 @@ def _vesicles(run: Run, o: dict[str, str]) -> str:
     kind = "an inextensible" if law == "inextensible" else f"a stretching ({law})"
     count = "One vesicle" if run.vesicles == 1 else f"{run.vesicles} vesicles"
     if run.vesicles > MANY:
-        return f"{count} with {kind} membrane{_ranges(run)}."
+        area, length = (run.each(name)[0] for name in ("area", "length"))
+        share = area.sum() / ((run.box[1] - run.box[0]) * (run.box[3] - run.box[2]))
+        sizes = f"area {_span(area)}, reduced area {_span(4 * np.pi * area / length**2)}, {_span(np.diff(run.start))}"
+        bending = f"and bending stiffness up to {run.c_b:g}"
+        return f"{count} with {kind} membrane {bending}: area fraction {share:.3f}, {sizes} markers each."
     shapes = []
     for area, length, n in zip(run.each("area")[0], run.each("length")[0], np.diff(run.start)):
         shapes.append(f"area {area:.4g}, length {length:.4g}, reduced area {4*np.pi*area/length**2:.3f}, {n} markers")
     bending = f"bending stiffness {run.c_b:g}" if run.c_b > 0 else "no bending stiffness"
     return f"{count} with {kind} membrane and {bending}: {'; '.join(shapes)}."
-
-
-def _ranges(run: Run) -> str:
-    """Return the area fraction, sizes and markers of many vesicles."""
-    area, length = (run.each(name)[0] for name in ("area", "length"))
-    reduced, markers = 4 * np.pi * area / length**2, np.diff(run.start)
-    box = (run.box[1] - run.box[0]) * (run.box[3] - run.box[2])
-    return (
-        f" and bending stiffness up to {run.c_b:g}: area fraction {area.sum() / box:.3f}, area {_span(area)}, reduced area "
-        f"{_span(reduced)}, {_span(markers)} markers each"
-    )
 
 
 def _method(run: Run, o: dict[str, str]) -> str:
