@@ -42,7 +42,7 @@ FOR := $(MACHINE)$(if $(SANITIZE)$(COVERAGE),,$(if $(ARCH), $(ARCH_OPTION)=$(ARC
 
 # Of pkg-config; Debian calls its HDF5 with MPI hdf5-openmpi.
 MODULES := PETSc hdf5-openmpi fftw3 muparser
-PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig) pkg-config
+PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig:$(PKG_CONFIG_PATH)) pkg-config
 COMMA := ,
 OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g$(if $(ARCH), $(ARCH_OPTION)=$(ARCH))))
 CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-psabi -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
@@ -104,7 +104,7 @@ LOADED = $(if $(PETSC_DIR),,$(shell ldd $(LIBRARY)))
 FIRST = $(foreach name,$(MANY_NAMES),$(foreach file,$(filter /%,$(LOADED)),$(if $(findstring /lib$(name).so,$(file)),$(file))))
 $(BIN)/petves: $(BUILD)/app/main.o $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR)' $(LIBS)
+	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR):$$ORIGIN/../lib' $(LIBS)
 
 # What a program has of tests/support.
 $(BUILD)/tests/test_direct: SUPPORT := $(wildcard tests/support/*direct*.c)

@@ -35,7 +35,7 @@ SCENE = (
 )
 #: 254 vesicles of 64 markers, packed at random to three tenths of a channel.
 MANY = (
-    "-domain_bc_x periodic -domain_box 0,42,0,20.16 -flow_center_y 10 -fluid_inertia none -vesicle_packing .3 "
+    "-domain_bc_x periodic -domain_box 0,42,0,20.16 -flow_center_y 10 -fluid_inertia none -vesicle_packing .3 -vesicle_packing_gap .033716776567236789 "
     "-vesicle_markers 64 -time_step .05"
 )
 

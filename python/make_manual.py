@@ -67,7 +67,7 @@ def completion(options: list[Option]) -> str:
             *choices,
             "  esac",
             f"  local all='{names} {WORDS}'",
-            f"  ((COMP_CWORD == 1)) && all='{TOOLS} '$all",
+            f"  ((COMP_CWORD == 1)) && all='{TOOLS} help '$all",
             '  COMPREPLY=($(compgen -W "$all" -- "$word"))',
             "}",
             "complete -o filenames -F _petves petves",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import io
 import os
+import re
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,9 @@ import petves
 from petves import laboratory, sweeps
 from petves.errors import Error
 from petves.program import become, scene_file, scenes
+
+TOOLS = ("plot", "movie", "watch", "report", "compare", "sweep", "numbers", "scenes")
+"""The commands; other words are the program's own."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -151,13 +156,17 @@ def main(arguments: list[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else arguments
     try:
         first = given[0] if given else ""
-        if first == "run" or (first.startswith("-") and first not in ("-h", "--help")):  # the program's own words
-            return become([*given[:1], *map(scene_file, given[1:2]), *given[2:]])
+        if first and first not in (*TOOLS, "-h", "--help"):  # the program's own words
+            at = int(first == "run")
+            return become([*given[:at], *map(scene_file, given[at : at + 1]), *given[at + 1 :]])
+        dashed = re.compile("-[a-z][a-z_-]+")  # an option with one dash, as those of runs have
+        given = [f"-{word.replace('_', '-')}" if dashed.fullmatch(word) else word for word in given]
         words = vars(parser().parse_args(given))
         command = words.pop("command")
         if isinstance(sys.stdout, io.TextIOWrapper):
             sys.stdout.reconfigure(errors="surrogateescape")  # names of folders may be any bytes
         lines = _run(command, words)
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader may have seen enough: petves scenes | head
         for line in lines:
             print(line)
         left = sweeps.failures(lines[0]) if command == "sweep" and isinstance(lines[0], Path) else []

@@ -43,7 +43,7 @@ class Options(TypedDict, total=False):
     vesicle_packing: Value  # area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center
     vesicle_packing_type: Literal['random', 'lattice'] | None  # random places and angles, or a rectangular lattice with -vesicle_angle
     vesicle_packing_seed: Value  # of the random packing: the same seed gives the same vesicles
-    vesicle_packing_gap: Value  # least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)
+    vesicle_packing_gap: Value  # least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20, but at least 0.6 marker spacings with the exact near field (length)
     vesicle_bending: Value  # c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out (length^5/time^2)
     vesicle_density_difference: Value  # density inside less density outside, over that outside; one for all, or one a vesicle or kind
     vesicle_viscosity_ratio: Value  # coupled: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady

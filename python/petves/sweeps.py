@@ -68,7 +68,7 @@ def sweep(
         When the grid is empty, the folder holds runs of other shared options, or a file of the sweep cannot be written.
     """
     folder, points = Path(folder), _combinations(grid, jobs, ranks)
-    base = Path(options_file).read_text() if options_file and Path(options_file).is_file() else ""
+    base = _options_of(Path(options_file)) if options_file and Path(options_file).is_file() else ""
     if options_file and not base:
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
     command()
@@ -131,6 +131,16 @@ def failures(path: str | Path) -> list[str]:
     with Path(path).open(newline="") as file:
         rows = list(csv.DictReader(file))
     return [f"{row['folder']}: {row['status']}: {row['message']}" for row in rows if row["status"] != "done"]
+
+
+def _options_of(path: Path) -> str:
+    """Return the text of an options file; a file that it names and that lies beside it is then found from here."""
+
+    def found(line: re.Match[str]) -> str:
+        beside = path.parent / line[2]
+        return f"{line[1]}{line[2] if Path(line[2]).exists() or not beside.exists() else beside}"
+
+    return re.sub(r"^(\s*-\w+_file\s+)([^\s#\"']+)", found, path.read_text(), flags=re.MULTILINE)
 
 
 def _made(folder: Path) -> Path:

@@ -6,6 +6,7 @@
 #include <glob.h>
 #include <libgen.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #ifndef PETVES_PYTHON
@@ -15,24 +16,26 @@
 static const char usage[] =
     "petves: inextensible vesicles in two-dimensional viscous flow\n"
     "\n"
-    "usage: petves run SCENE.opts [-option value ...]       a scene from a file; options behind it win\n"
+    "usage: petves run SCENE [-option value ...]            a scene: a file, or a name of petves scenes\n"
     "       petves -option value ...                        the same without a file\n"
-    "       mpirun -n RANKS petves run SCENE.opts ...       on several ranks\n"
-    "       petves plot|movie|report DIR                    pictures of a run's folder\n"
+    "       mpirun -n RANKS petves run SCENE ...            on several ranks\n"
+    "       petves plot|movie|watch|report DIR              pictures of a run's folder\n"
     "       petves compare RUN RUN, petves sweep DIR ...    two runs side by side, a grid of options\n"
+    "       petves scenes, petves numbers ...               scenes that come with petves; options from SI units\n"
     "\n"
-    "examples:\n"
-    "  petves run runs/default.opts                         an elongated vesicle relaxes; files in out/default\n"
-    "  petves run runs/shear.opts -time_end 5 -output_dir out/mine -view\n"
-    "  petves plot out/mine\n"
+    "Options of a run have one dash, -time_end 5, and win over the scene's; those of the tools two, --width 3.4.\n"
     "\n"
-    "  -help options   every option with its default and what is allowed\n"
-    "  -help WORD      those with the word in their name, as in -help vesicle\n"
+    "  petves run shear -time_end 5 -output_dir out/mine    a vesicle in shear, into the folder out/mine\n"
+    "  petves plot out/mine                                 draws it\n"
+    "\n"
+    "  -help options   every option with its default and what is allowed; -help and help are the same\n"
+    "  -help WORD      those with the word in their name or help, as in -help channel\n"
+    "  -help TOOL      a tool and its options, as in -help plot\n"
     "  -help all       sets the scene up and adds the options of its solvers, which are PETSc's\n"
     "  -version        version, commit, PETSc, processor\n"
     "\n"
-    "Read on: README.md; docs/choosing.md which grid, step and scheme; docs/errors.md what messages mean;\n"
-    "runs/default.opts a scene to start from, its neighbours further ones.\n";
+    "Read on: README.md; docs/choosing.md which grid, step and scheme; docs/errors.md what messages mean\n"
+    "(after make install in share/doc/petves).\n";
 
 static const char help_line[] =
     "Each line: -option, its default, and in brackets what is allowed. Files have the same, an option a line.\n\n";
@@ -68,6 +71,9 @@ static void StartAlone(void) {
   for (size_t k = 0; k < sizeof(names) / sizeof(names[0]); k++) (void)setenv(names[k][0], names[k][1], 0);
 }
 
+/* What the Python package does. */
+static const char *const tools[] = {"plot", "movie", "watch", "report", "compare", "sweep", "numbers", "scenes", NULL};
+
 static PetscBool IsOneOf(const char *word, const char *const list[]) {
   for (; *list; list++)
     if (!strcmp(*list, word)) return PETSC_TRUE;
@@ -94,32 +100,53 @@ static int Answer(int n, char **word) {
     if (!IsFirst()) return 0;
     if (!topic || !strcmp(topic, "options")) printf("%s", topic ? help_line : usage);
     if (!topic || SceneHelp(stdout, strcmp(topic, "options") ? topic : NULL)) return 0;
-    fprintf(stderr, "petves: error: -help %.100s: in no option's name; allowed: options, all, or part of a name\n",
+    fprintf(stderr,
+            "petves: error: -help %.100s: in no option's name or help; allowed: options, all, a tool, or a word\n",
             topic);
     return 1;
   }
   return -1;
 }
 
+/* The path of a file in one of the places, which count from the folder of this program. FALSE: it is in none. */
+static PetscBool FindBeside(const char *const places[], const char *file, char path[PETSC_MAX_PATH_LEN]) {
+  char self[PETSC_MAX_PATH_LEN] = "", pattern[2 * PETSC_MAX_PATH_LEN];
+  glob_t found;
+  if (readlink("/proc/self/exe", self, sizeof(self) - 1) < 0) return PETSC_FALSE;
+  (void)dirname(self);
+  for (; *places; places++) {
+    (void)snprintf(pattern, sizeof(pattern), "%s/%s/%s", self, *places, file);
+    if (glob(pattern, 0, NULL, &found)) continue;
+    (void)snprintf(path, PETSC_MAX_PATH_LEN, "%s", found.gl_pathv[0]);
+    globfree(&found);
+    return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Where Python finds the package: that of the source tree or of the prefix, whichever this program is in. */
 static void FindPackage(void) {
-  static const char *const places[] = {"../python", "../lib/python3*/dist-packages"};
-  char path[PETSC_MAX_PATH_LEN] = "", pattern[PETSC_MAX_PATH_LEN + 64];
+  static const char *const places[] = {"../python", "../lib/python3*/dist-packages", NULL};
+  static const char file[] = "petves/__main__.py";
+  char path[PETSC_MAX_PATH_LEN] = "", paths[2 * PETSC_MAX_PATH_LEN];
   const char *const before = getenv("PYTHONPATH");
-  glob_t found;
   if (readlink("/proc/self/exe", path, sizeof(path) - 1) < 0) return;
   if (!strcmp(basename(path), "petves")) (void)setenv("PETVES", path, 0);
-  (void)dirname(path);
-  for (size_t k = 0; k < sizeof(places) / sizeof(places[0]); k++) {
-    (void)snprintf(pattern, sizeof(pattern), "%s/%s/petves/__main__.py", path, places[k]);
-    if (glob(pattern, 0, NULL, &found)) continue;
-    found.gl_pathv[0][strlen(found.gl_pathv[0]) - strlen("/petves/__main__.py")] = 0;
-    (void)snprintf(pattern, sizeof(pattern), "%s%s%s", found.gl_pathv[0], before && *before ? ":" : "",
-                   before ? before : "");
-    (void)setenv("PYTHONPATH", pattern, 1);
-    globfree(&found);
-    return;
-  }
+  if (!FindBeside(places, file, path)) return;
+  path[strlen(path) - strlen(file) - 1] = 0;
+  (void)snprintf(paths, sizeof(paths), "%s%s%s", path, before && *before ? ":" : "", before ? before : "");
+  (void)setenv("PYTHONPATH", paths, 1);
+}
+
+/* The file of a scene: the word, or, where that is no file, the scene of this name of the source tree or the prefix. */
+static char *SceneFile(char *word) {
+  static const char *const places[] = {"../runs", "../share/petves/runs", NULL};
+  static char path[PETSC_MAX_PATH_LEN];
+  char file[PETSC_MAX_PATH_LEN];
+  struct stat status;
+  if ((!stat(word, &status) && !S_ISDIR(status.st_mode)) || strpbrk(word, "*?[")) return word;
+  (void)snprintf(file, sizeof(file), "%s.opts", word);
+  return FindBeside(places, file, path) ? path : word;
 }
 
 /* petves plot ...: the Python package's. Does not return, but where there is no Python. */
@@ -170,16 +197,27 @@ static int RunOrUsage(int argc, char **argv) {
 }
 
 int PetvesMain(int argc, char **argv) {
-  static const char *const tools[] = {"plot",  "movie",   "watch",  "report", "compare",
-                                      "sweep", "numbers", "scenes", NULL};
-  static char options_file[] = "-options_file";
-  int status;
-  if (argc > 1 && IsOneOf(argv[1], tools)) return StartTool(argc, argv);
-  if (argc > 1 && !strcmp(argv[1], "run")) { /* petves run FILE, petves run -option */
-    const PetscBool file = argc > 2 && argv[2][0] != '-' ? PETSC_TRUE : PETSC_FALSE;
-    argv[1] = file ? options_file : argv[0];
-    if (!file) argc--, argv++;
+  static char options_file[] = "-options_file", help[] = "-help", tool_help[] = "--help";
+  const PetscBool run = argc > 1 && !strcmp(argv[1], "run") ? PETSC_TRUE : PETSC_FALSE;
+  char *scene = NULL, **words;
+  int status, n = 1;
+  if (argc > 1 && !strcmp(argv[1], "help")) argv[1] = help;
+  if (argc > 2 && !strcmp(argv[1], help) && IsOneOf(argv[2], tools)) {
+    argv[1] = argv[2];
+    argv[2] = tool_help;
   }
-  status = Answer(argc - 1, argv + 1);
-  return status < 0 ? RunOrUsage(argc, argv) : status;
+  if (argc > 1 && IsOneOf(argv[1], tools)) return StartTool(argc, argv);
+  if (run) argc--, argv++; /* petves run FILE is petves FILE, petves run -option is petves -option */
+  if (argc > 1 && argv[1][0] != '-') scene = SceneFile(argv[1]);
+  if (scene && !run && access(scene, F_OK)) scene = NULL; /* no scene, and no command */
+  words = (char **)calloc((size_t)argc + 2, sizeof(*words));
+  if (!words) return 1;
+  words[0] = argv[0];
+  if (scene) words[n++] = options_file;
+  if (scene) words[n++] = scene;
+  for (int k = scene ? 2 : 1; k < argc; k++) words[n++] = argv[k];
+  status = Answer(n - 1, words + 1);
+  if (status < 0) status = RunOrUsage(n, words);
+  free(words);
+  return status;
 }

@@ -262,6 +262,7 @@ PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
   PetscBool stepped = PETSC_TRUE;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
+  PetscCall(SceneSayModel(s->scene));
   while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->time.end, &stepped, &failure));
   PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;

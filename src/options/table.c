@@ -105,8 +105,8 @@ PetscErrorCode OptionsCheckUsed(const OptionTable *t, const void *values) {
     if (!t->given[i] || OptionUsed(&t->row[i], values)) continue;
     PetscCall(PetscOptionsFindPair(NULL, NULL, t->row[i].name, &value, NULL));
     SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
-            "%s %.128s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", t->row[i].name,
-            value ? value : "", t->row[i].need->what);
+            "%s%s%.128s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", t->row[i].name,
+            value && *value ? " " : "", value ? value : "", t->row[i].need->what);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -23,16 +23,20 @@ static PetscBool OptionInRange(const char *range, PetscReal x) {
   return PETSC_TRUE;
 }
 
-static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const char *text, PetscBool integer,
+/* One number of a value; where the value is a list, a message names both. */
+static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const char *all, const char *text,
                                         PetscReal *x) {
+  const PetscBool integer = o->type == OPT_INT || o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
   const char *what = integer ? "an integer" : "a number";
+  char part[128] = "";
   PetscFunctionBeginUser;
+  if (strcmp(text, all)) PetscCall(PetscSNPrintf(part, sizeof(part), "\"%.100s\" is ", text));
   PetscCheck(OptionParseReal(text, x) &&
                  (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
-             comm, PETSC_ERR_USER_INPUT, "%s %s: not %s; allowed: %s%s%s", o->name, text, what, what,
+             comm, PETSC_ERR_USER_INPUT, "%s %s: %snot %s; allowed: %s%s%s", o->name, all, part, what, what,
              strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
-  PetscCheck(OptionInRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: out of range; allowed: %s %s", o->name,
-             text, what, o->range);
+  PetscCheck(OptionInRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: %sout of range; allowed: %s %s", o->name,
+             all, part, what, o->range);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,7 +55,7 @@ static PetscInt OptionIndexInList(const char *list, const char *text) {
 /* Numbers between commas, x to be freed. */
 static PetscErrorCode OptionParseNumbers(MPI_Comm comm, const OptionRow *o, const char *text, PetscInt *n,
                                          PetscReal **x) {
-  const PetscBool integer = o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
+  const char *const all = text;
   char *item;
   PetscFunctionBeginUser;
   *n = 1;
@@ -61,7 +65,7 @@ static PetscErrorCode OptionParseNumbers(MPI_Comm comm, const OptionRow *o, cons
   for (PetscInt k = 0; k < *n; k++) {
     const size_t length = strcspn(text, ",");
     PetscCall(PetscStrncpy(item, text, length + 1));
-    PetscCall(OptionParseNumber(comm, o, item, integer, *x + k));
+    PetscCall(OptionParseNumber(comm, o, all, item, *x + k));
     text += length + 1;
   }
   PetscCall(PetscFree(item));
@@ -131,11 +135,11 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
   PetscFunctionBeginUser;
   switch (o->type) {
   case OPT_REAL:
-    PetscCall(OptionParseNumber(comm, o, text, PETSC_FALSE, &x));
+    PetscCall(OptionParseNumber(comm, o, text, text, &x));
     *(PetscReal *)place = x;
     break;
   case OPT_INT:
-    PetscCall(OptionParseNumber(comm, o, text, PETSC_TRUE, &x));
+    PetscCall(OptionParseNumber(comm, o, text, text, &x));
     *(PetscInt *)place = (PetscInt)x;
     break;
   case OPT_PATH:

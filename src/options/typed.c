@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define MOST_BYTES (16 << 20) /* of an option file */
 #define MOST_NAME 128         /* characters of an option's name */
@@ -67,7 +68,8 @@ static PetscBool WordIsName(const Word *word) {
 static void TypedCheckName(Typed *t, const Source *from, const char *name) {
   const char *p = name + 1;
   if (*p == '-') {
-    TypedWrong(t, from, "%.100s: two dashes; allowed: one, as in %.100s", name, name + 1);
+    TypedWrong(t, from, "%.100s: two dashes, as petves plot and other tools have; allowed in a run: one, as in %.100s",
+               name, name + 1);
     return;
   }
   while (isalnum((unsigned char)*p) || *p == '_' || *p == '-' || *p == '.') p++;
@@ -93,7 +95,8 @@ static void TypedWrongWord(Typed *t, const Source *from, const char *name, const
   else if (from->line)
     TypedWrong(t, from, "no option, for its first word begins with no dash; allowed: -name value");
   else
-    TypedWrong(t, from, "\"%.150s\": no option, nor the value of one; allowed: -name value, or petves run FILE", word);
+    TypedWrong(t, from,
+               "\"%.150s\": no option, file, scene or command; allowed: -name value, or what petves help lists", word);
 }
 
 static void TypedReadFile(Typed *t, const char *option, const char *path, const Source *outer);
@@ -128,10 +131,22 @@ static PetscBool NameIsFile(const char *name) {
   return strcasecmp(name, "-options_file") && strcasecmp(name, "-options_file_yaml") ? PETSC_FALSE : PETSC_TRUE;
 }
 
+/* The value of an option that names a file, such as -vesicle_file: where the program was started no file has this path,
+   but beside the option file that gives it there is one, its path is the value. */
+static const char *TypedFileValue(const Source *from, const char *name, const char *value,
+                                  char path[PETSC_MAX_PATH_LEN]) {
+  const char *const end = strrchr(name, '_'), *const slash = from->line ? strrchr(from->name, '/') : NULL;
+  if (!slash || !value || *value == '/' || !access(value, F_OK)) return value;
+  if (!NameIsFile(name) && (!end || strcasecmp(end, "_file"))) return value;
+  (void)snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", (int)(slash + 1 - from->name), from->name, value);
+  return access(path, F_OK) ? value : path;
+}
+
 /* Pairs of names and values. files: -options_file is to be read (1), left out (-1). */
 static void TypedTakeWords(Typed *t, const Source *from, int n, const Word word[], int files) {
   for (int k = 0; k < n && !*t->error;) {
     const char *name = word[k].text, *value = NULL;
+    char path[PETSC_MAX_PATH_LEN];
     if (!WordIsName(&word[k])) TypedWrongWord(t, from, NULL, NULL, name);
     if (!*t->error) TypedCheckName(t, from, name);
     if (++k < n && !WordIsName(&word[k])) value = word[k++].text;
@@ -145,6 +160,7 @@ static void TypedTakeWords(Typed *t, const Source *from, int n, const Word word[
     if (!*t->error && !file && from->line && !t->own && TypedIsOwn(name, value))
       TypedWrong(t, from, "%.60s: not for a file, which may come from others; allowed: on the command line", name);
     if (*t->error) return;
+    value = TypedFileValue(from, name, value, path);
     if (!file)
       TypedAppend(t, name, value);
     else if (!value)

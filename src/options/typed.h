@@ -3,9 +3,9 @@
 
    A file has an option a line, its value behind it. A value with blanks or # in it stands in quotes, "..." or '...'.
    # at the beginning of a word starts a comment. Lines end with LF, CR LF or CR; a byte-order mark is skipped.
-   -options_file includes another file; its path is relative to where the program was started. Files of YAML
-   (-options_file_yaml, or named .yaml or .yml) are read by PETSc's own rules. A file may come from others: options of
-   PETSc that start programs, load code or write files are refused in it (TypedIsOwn). */
+   -options_file includes another file. The files that a file names are looked for where the program was started, then
+   beside the file. Files of YAML (-options_file_yaml, or named .yaml or .yml) are read by PETSc's own rules. A file may
+   come from others: options of PETSc that start programs, load code or write files are refused in it (TypedIsOwn). */
 #pragma once
 #include "base/base.h"
 

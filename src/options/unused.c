@@ -1,4 +1,5 @@
 /* Misspelt and unused options: found, and named with the option that is meant, if one is near. */
+#define _GNU_SOURCE /* strcasestr */
 #include "options/options.h"
 #include "base/agree.h"
 #include <strings.h>
@@ -113,10 +114,10 @@ static const char *NameMeant(const OptionTable *t, const char *const others[], c
   return best;
 }
 
-/* TRUE if a name has these words as whole words, as -domain_inflow_x has inflow. */
+/* TRUE if a name has these words as whole words, case ignored, as -domain_inflow_x has inflow. */
 static PetscBool NameHasWords(const char *name, const char *words) {
   const size_t n = strlen(words);
-  for (const char *p = strstr(name, words); p; p = strstr(p + 1, words))
+  for (const char *p = strcasestr(name, words); p; p = strcasestr(p + 1, words))
     if ((p[-1] == '_' || p[-1] == '-') && (!p[n] || p[n] == '_')) return PETSC_TRUE;
   return PETSC_FALSE;
 }
@@ -129,7 +130,7 @@ static PetscBool NameIsAmong(const OptionTable *t, const char *names, const char
     char one[64];
     PetscBool found;
     (void)snprintf(one, sizeof(one), "%.*s", (int)n, p);
-    found = *one == '*' ? NameHasWords(name, one + 1) : !strcmp(one, name);
+    found = *one == '*' ? NameHasWords(name, one + 1) : !strcasecmp(one, name);
     for (PetscInt i = 0; i < t->n && *one == '*' && found; i++) found = !NameHasWords(t->row[i].name, one + 1);
     if (found) return PETSC_TRUE;
     p += n;
@@ -143,25 +144,26 @@ static PetscErrorCode OptionRefuse(const OptionTable *t, const void *values, con
                                    const char value[]) {
   const OptionOwner *owner = owners;
   const char *meant;
-  char in_force[OPTION_MAX_NAME];
+  char in_force[OPTION_MAX_NAME], given[256];
   PetscBool known = PETSC_FALSE;
   PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(given, sizeof(given), *value ? "%s %s" : "%s", name, value));
   while (owner->prefix && strncmp(owner->prefix, name, strlen(owner->prefix))) owner++;
   if (owner->prefix) PetscCall(OptionValue(t, values, OptionFind(t, owner->name), in_force, sizeof(in_force)));
   for (PetscInt i = 0; others[i] && !known; i++) PetscCall(PetscStrcmp(others[i], name, &known));
   PetscCheck(!owner->prefix || !strcmp(in_force, owner->value), t->comm, PETSC_ERR_USER_INPUT,
-             "%s %s: not used by this scene; allowed: with %s %s (-allow_unused_options goes on)", name, value,
-             owner->name, owner->value);
+             "%s: not used by this scene; allowed: with %s %s (-allow_unused_options goes on)", given, owner->name,
+             owner->value);
   PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
-             "%s %s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", name, value);
+             "%s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", given);
   while (suggestion->names && !NameIsAmong(t, suggestion->names, name)) suggestion++;
   PetscCheck(!suggestion->names, t->comm, PETSC_ERR_USER_INPUT,
-             "%s %s: no such option; %s (-allow_unused_options goes on)", name, value, suggestion->say);
+             "%s: no such option; %s (-allow_unused_options goes on)", given, suggestion->say);
   meant = NameMeant(t, others, name);
-  PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT,
-             "%s %s: no such option; %s is meant? (-allow_unused_options goes on)", name, value, meant);
+  PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT, "%s: no such option; %s is meant? (-allow_unused_options goes on)",
+             given, meant);
   SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
-          "%s %s: no such option; petves -help options lists them (-allow_unused_options goes on)", name, value);
+          "%s: no such option; petves -help options lists them (-allow_unused_options goes on)", given);
 }
 
 PetscErrorCode OptionsTryLate(const OptionTable *t) {

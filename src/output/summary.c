@@ -150,11 +150,13 @@ static void JsonPrintVersions(FILE *f) {
           release);
 }
 
-/* Print the model of the fluid, the Reynolds number and the largest CFL number of a step (0 without convection). */
+/* Print the model of the fluid, the Reynolds number (null: not known) and the largest CFL number of a step (0 without
+ * convection). */
 static void JsonPrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
-  fprintf(f, "  \"inertia\": \"%s\",\n  \"reynolds\": %.6g,\n  \"cfl_max\": %.6g,\n  \"warning\": ",
-          names[scene->fluid.inertia], (double)scene->reynolds, (double)cfl_max);
+  fprintf(f, "  \"inertia\": \"%s\",\n", names[scene->fluid.inertia]);
+  fprintf(f, scene->reynolds >= 0 ? "  \"reynolds\": %.6g,\n" : "  \"reynolds\": null,\n", (double)scene->reynolds);
+  fprintf(f, "  \"cfl_max\": %.6g,\n  \"warning\": ", (double)cfl_max);
   JsonPrintString(f, scene->warning);
   fprintf(f, ",\n");
 }

@@ -35,7 +35,7 @@ static const Calibrated *CalibratedRow(Scene s) {
 #define WIDE 2       /* spacings: wider films are resolved */
 #define GROWTH 1.2   /* of the markers from one try to the next */
 
-/* A first shape's tail (SpectralTail beyond two thirds of the modes) for an error of 1e-3, and the largest: 0.31 left
+/* The tail of a shape that markers resolve for an error of 1e-3 and where none is given, and the largest: 0.31 left
    7e-4 of R0 in a pair pressed together. */
 #define TAIL 0.15
 #define MOST_TAIL 0.3
@@ -113,18 +113,22 @@ static PetscErrorCode AutoReportFilm(Scene scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscReal SceneRoughTail(Scene scene) {
+  const PetscReal wanted = scene->scheme.wanted;
+  return wanted > 0 ? PetscMin(MOST_TAIL, TAIL * PetscSqrtReal(wanted / 1e-3)) : TAIL;
+}
+
 /* Find out whether the markers resolve the shapes and the films of the start. */
 static PetscErrorCode StartIsResolved(Scene scene, PetscBool *resolved) {
   const Shape *s = &scene->shape;
-  const PetscReal tail = PetscMin(MOST_TAIL, TAIL * PetscSqrtReal(scene->scheme.wanted / 1e-3));
   PetscReal spacings, error;
   PetscFunctionBeginUser;
   PetscCall(StartThinnestFilm(scene, &spacings, &error));
-  *resolved = error < 0.5 * scene->scheme.wanted ? PETSC_TRUE : PETSC_FALSE;
+  *resolved = error < 0.5 * scene->scheme.wanted && spacings > SCENE_FILM ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt v = 0; v < s->vesicles && *resolved; v++) {
     Spectral spectral;
     PetscCall(SpectralCreate(s->start[v + 1] - s->start[v], &spectral));
-    if (SpectralTail(spectral, 2. / 3, s->X + 2 * s->start[v]) > tail) *resolved = PETSC_FALSE;
+    if (SpectralTail(spectral, 2. / 3, s->X + 2 * s->start[v]) > SceneRoughTail(scene)) *resolved = PETSC_FALSE;
     PetscCall(SpectralDestroy(&spectral));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

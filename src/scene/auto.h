@@ -45,3 +45,7 @@ PETSC_EXTERN PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], P
    chosen, and why, and the warning of the model. Collective. */
 PETSC_EXTERN PetscErrorCode SceneReportGrid(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneReport(Scene scene);
+
+/* SceneRoughTail - the largest tail (SpectralTail beyond two thirds of the modes) of a shape that markers resolve:
+   0.15, with -scheme_auto by the error wanted. Not collective. */
+PETSC_EXTERN PetscReal SceneRoughTail(Scene scene);

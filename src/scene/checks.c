@@ -47,20 +47,19 @@ PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscI
   const char *const number = each == 1 ? "one" : "two";
   PetscFunctionBeginUser;
   PetvesCheck(n == each || n == each * count, scene->comm,
-              "%s: %" PetscInt_FMT " numbers given for %" PetscInt_FMT " %s; allowed: %s for all or %s %s", name, n,
-              count, what, number, number, one);
+              "%s: %" PetscInt_FMT " number%s given for %" PetscInt_FMT " %.*s; allowed: %s for all or %s %s", name, n,
+              n == 1 ? "" : "s", count, (int)strlen(what) - (count == 1), what, number, number, one);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* clang-format off */
 /* Lists of a fixed length. */
 static PetscErrorCode SceneCheckLengths(Scene s) {
-  const PetscInt box = s->domain.box.n, cells = s->domain.cells.n, u = s->flow.velocity.n, g = s->gravity.g.n;
   const SceneRule rules[] = {
-    {box != 4, "-domain_box: %.0f numbers given; allowed: x_min,x_max,y_min,y_max", {box}},
-    {cells != 2, "-domain_cells: %.0f numbers given; allowed: two, cells in x and in y", {cells}},
-    {u != 2, "-flow_velocity: %.0f numbers given; allowed: two, u_x,u_y", {u}},
-    {g != 2, "-fluid_gravity: %.0f numbers given; allowed: two, g_x,g_y", {g}}};
+    {s->domain.box.n != 4, "-domain_box {-domain_box}: not four numbers; allowed: x_min,x_max,y_min,y_max"},
+    {s->domain.cells.n != 2, "-domain_cells {-domain_cells}: not two numbers; allowed: cells in x and in y"},
+    {s->flow.velocity.n != 2, "-flow_velocity {-flow_velocity}: not two numbers; allowed: u_x,u_y"},
+    {s->gravity.g.n != 2, "-fluid_gravity {-fluid_gravity}: not two numbers; allowed: g_x,g_y"}};
   return REFUSE(s, rules);
 }
 
@@ -84,9 +83,9 @@ static PetscErrorCode SceneCheckVesicleList(Scene scene, const char name[], Pets
                                             PetscBool shared) {
   PetscFunctionBeginUser;
   PetscCheck(n == each * (PetscInt64)scene->vesicles.count || (shared && n == each), scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " numbers given; allowed: %" PetscInt_FMT " for each of -vesicle_count %" PetscInt_FMT
-             " vesicles%s",
-             name, n, each, scene->vesicles.count, shared ? ", or once for all" : "");
+             "%s: %" PetscInt_FMT " number%s given; allowed: %" PetscInt_FMT
+             " for each of -vesicle_count %" PetscInt_FMT " vesicles%s",
+             name, n, n == 1 ? "" : "s", each, scene->vesicles.count, shared ? ", or once for all" : "");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,9 +96,9 @@ static PetscErrorCode SceneCheckKinds(Scene scene, const char name[], PetscInt n
   PetscFunctionBeginUser;
   if (scene->vesicles.shape == SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS); /* their number is known later */
   PetscCheck(n == each || n == each * kinds || kinds == 1, scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " numbers given; allowed: %" PetscInt_FMT " for each of %" PetscInt_FMT
+             "%s: %" PetscInt_FMT " number%s given; allowed: %" PetscInt_FMT " for each of %" PetscInt_FMT
              " kinds (-vesicle_mixture), or once for all",
-             name, n, each, kinds);
+             name, n, n == 1 ? "" : "s", each, kinds);
   PetscCheck(n == each || kinds > 1 || scene->vesicles.packing == 0, scene->comm, PETSC_ERR_USER_INPUT,
              "%s: %" PetscInt_FMT " numbers given with -vesicle_packing; allowed: %" PetscInt_FMT
              " for all, or an entry for each kind of -vesicle_mixture",

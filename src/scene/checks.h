@@ -31,10 +31,14 @@ PETSC_EXTERN PetscErrorCode SceneCheckCells(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckBodies(Scene scene);
 
 /* SceneChooseInertia (inertia.c) - the Reynolds number (speed R0/nu with R0 of the largest vesicle and the speed of the
-   scene: rate R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles),
-   the model that -fluid_inertia auto stands for, and the warning that goes with it. Collective; stops with the user's
-   message when the model does not fit the scene. */
+   scene: rate R0 of shear and extension, u_max of poiseuille, c_b/(nu R0^2) of a quiescent fluid; 0 without vesicles,
+   NaN of a custom flow), the model that -fluid_inertia auto stands for, and the warning that goes with it. Collective;
+   stops with the user's message when the model does not fit the scene. */
 PETSC_EXTERN PetscErrorCode SceneChooseInertia(Draft scene);
+
+/* SceneModel (inertia.c) - the model of the fluid and why it was taken, as text. Not collective. */
+#define SCENE_MODEL 128
+PETSC_EXTERN void SceneModel(Scene scene, char text[SCENE_MODEL]);
 
 /* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them (obstaclechecks.c);
    finds what is around each. Collective; stops with the user's message. */

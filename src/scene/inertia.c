@@ -10,6 +10,7 @@ static PetscReal SceneReynolds(Scene scene, PetscReal R0) {
   const Flow *flow = &scene->flow;
   PetscReal speed = 0;
   if (R0 == 0) return 0;
+  if (FlowIsCustom(flow)) return NAN;
   if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) speed = PetscAbsReal(flow->rate) * R0;
   if (flow->type == FLOW_POISEUILLE) speed = PetscAbsReal(flow->peak);
   if (flow->type == FLOW_UNIFORM) speed = PetscHypotReal(flow->velocity.v[0], flow->velocity.v[1]);
@@ -80,12 +81,37 @@ static PetscBool FlowIsPaper(Scene scene) {
   return type == FLOW_QUIESCENT || type == FLOW_SHEAR || FlowIsCustom(&scene->flow) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Whether the model has inertia, and why: by the first of these that holds. */
+static PetscBool InertiaChoose(Scene s, PetscReal R0, const char **why) {
+  const struct {
+    PetscInt holds;
+    PetscBool has;
+    const char *why;
+  } rules[] = {{s->fluid.inertia != INERTIA_AUTO, s->fluid.inertia != INERTIA_NONE, "-fluid_inertia"},
+               {FluidSpecIsFree(&s->fluid), PETSC_FALSE, "default: unbounded fluid"},
+               {SceneHasContrast(s), PETSC_FALSE, "default: two viscosities"},
+               {s->obstacles.shape != OBSTACLE_NONE, PETSC_FALSE, "default: obstacles"},
+               {SceneIsProjection(s), PETSC_TRUE, "default of split and penalty"},
+               {R0 == 0, PETSC_TRUE, "default without vesicles"},
+               {FlowIsCustom(&s->flow), PETSC_TRUE, "default of a flow of your own"},
+               {FlowIsPaper(s), PETSC_TRUE, "default at rest and in shear"},
+               {SceneReynolds(s, R0) < SMALL_REYNOLDS, PETSC_FALSE, "default at Re below 0.01"},
+               {PETSC_TRUE, PETSC_TRUE, "default at Re from 0.01 on"}},
+    *rule = rules;
+  while (!rule->holds) rule++;
+  *why = rule->why;
+  return rule->has;
+}
+
 PetscBool SceneHasInertia(Scene scene, PetscReal R0) {
-  if (scene->fluid.inertia != INERTIA_AUTO) return scene->fluid.inertia != INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
-  if (FluidSpecIsFree(&scene->fluid) || SceneHasContrast(scene) || scene->obstacles.shape != OBSTACLE_NONE)
-    return PETSC_FALSE;
-  if (SceneIsProjection(scene) || R0 == 0 || FlowIsPaper(scene)) return PETSC_TRUE;
-  return SceneReynolds(scene, R0) >= SMALL_REYNOLDS ? PETSC_TRUE : PETSC_FALSE;
+  const char *why;
+  return InertiaChoose(scene, R0, &why);
+}
+
+void SceneModel(Scene s, char text[SCENE_MODEL]) {
+  static const char *const names[] = {"", "quasi-steady Stokes", "unsteady Stokes",
+                                      "Navier-Stokes, convection explicit"};
+  (void)snprintf(text, SCENE_MODEL, "%s (%s)", names[s->fluid.inertia], s->why_inertia);
 }
 
 /* Cells between markers, from which on fluid with inertia passes between them; the default has 2. */
@@ -118,7 +144,8 @@ static PetscErrorCode SceneWarnOfSparse(Draft scene) {
 /* clang-format off */
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = SceneCarriedReynolds(scene), R0 = SceneLargestRadius(scene);
-  const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0);
+  const PetscBool custom = FlowIsCustom(&scene->flow);
+  const PetscBool baseline = SceneIsProjection(scene), inertia = InertiaChoose(scene, R0, &scene->why_inertia);
   PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;
@@ -136,12 +163,12 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
   PetscCall(SCENE_REFUSE_IF(scene, !seamless && scene->fluid.inertia == INERTIA_CONVECTIVE,
     "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady", {"xy"[dir % 2], "xy"[dir % 2]}));
   *scene->warning = 0;
-  if (scene->fluid.inertia == INERTIA_UNSTEADY && scene->reynolds > CARRIED_REYNOLDS && carried > CARRIED_REYNOLDS)
+  if (scene->fluid.inertia == INERTIA_UNSTEADY && !(scene->reynolds <= CARRIED_REYNOLDS) && carried > CARRIED_REYNOLDS)
     PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
                             "-fluid_inertia unsteady at Re = %.3g with a vesicle that the flow carries along: without "
                             "convection the flow is not Galilean invariant, the vesicle drags the fluid that it "
-                            "displaces behind it and may drift the wrong way; use convective%s",
-                            (double)scene->reynolds, baseline ? " with -scheme_type coupled" : ""));
+                            "displaces behind it and may drift the wrong way; use %s%s",
+                            (double)(custom ? carried : scene->reynolds), custom ? "none" : "convective", baseline ? " with -scheme_type coupled" : ""));
   PetscCall(SceneWarnOfSparse(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,8 +18,10 @@ static PetscErrorCode ObstaclesCheckMethod(Scene s) {
      "-obstacle_spacing {-obstacle_spacing}: with inertia of the fluid obstacles so far apart leak; allowed: at most 1.5, or -fluid_inertia none"},
     {s->coupling.near_field != NEAR_EXACT,
      "-obstacle_shape: not with -coupling_near_field none; allowed: exact"},
+    {!SceneHasBoxPart(s) && s->coupling.box_part,
+     "-domain_box {-domain_box}: obstacles need a box at most %.0f times as long as high; allowed: shorter periods", {FLUID_LONGEST_PERIOD}},
     {!SceneHasBoxPart(s),
-     "-obstacle_shape: needs the box part of the near field, without which its forces are wrong by parts of a hundred; allowed: -coupling_box_part true in a box whose periods are at most 4 times its other side"}};
+     "-coupling_box_part {-coupling_box_part}: without it forces of obstacles are wrong by parts of a hundred; allowed: true"}};
   return REFUSE(s, rules);
 }
 

@@ -154,13 +154,13 @@ static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
   const PetscReal turns = own->shift * rows;
   const SceneRule rules[] = {
     {rows < 0 || (columns > 0) != (rows > 0),
-     "-obstacle_lattice: %.0f numbers given; allowed: columns,rows, both above 0, or 0,0 for none", {own->lattice.n}},
+     "-obstacle_lattice {-obstacle_lattice}: no lattice; allowed: columns,rows, both above 0, or 0,0 for none"},
     {scene->fluid.bc[1] == BC_PERIODIC && PetscAbsReal(turns - PetscFloorReal(turns + 0.5)) >= 1e-9,
      "-obstacle_shift {-obstacle_shift}: %.0f rows are shifted by %g columns, so that the lattice breaks where the box repeats; allowed: rows times shift a whole number", {rows, turns}},
     {count && SceneGiven(scene, "-obstacle_center"),
      "-obstacle_center: given together with -obstacle_lattice; allowed: one of them"},
     {!count && own->center.n % 2,
-     "-obstacle_center: %.0f numbers given; allowed: x,y of each post", {own->center.n}}};
+     "-obstacle_center {-obstacle_center}: not pairs; allowed: x,y of each post"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(scene, rules));
   PetscCall(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
@@ -171,7 +171,7 @@ static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const SceneRule rules[] = {
     {own->radius.n != 2,
-     "-obstacle_shape couette: -obstacle_radius has %.0f numbers; allowed: two, the inner and the outer radius", {own->radius.n}},
+     "-obstacle_shape couette: -obstacle_radius {-obstacle_radius}: not two numbers; allowed: the inner and the outer radius"},
     {own->radius.n == 2 && own->radius.v[0] >= own->radius.v[1],
      "-obstacle_shape couette: -obstacle_radius {-obstacle_radius}; allowed: the inner radius first, smaller than the outer one"}};
   PetscFunctionBeginUser;

@@ -5,14 +5,22 @@
 
 #define GAP_CELLS 1    /* cells of the default gap of a packing */
 #define LEEWAY 0.25    /* cells that markers fitted to an ellipse may lie beside it */
-#define GAP_RADII 0.05 /* largest default gap, over R0 of the smallest vesicle */
+#define GAP_RADII 0.05 /* the default gap over R0 of the smallest vesicle, at most, where its markers resolve that */
 
-/* The gap of a packing: a cell, but at most a twentieth of R0, a film that the near field resolves. */
-static PetscReal PackedGap(Scene scene, const Kinds *kinds) {
-  PetscReal R0 = PETSC_MAX_REAL;
-  if (scene->vesicles.packing_gap > 0) return scene->vesicles.packing_gap;
-  for (PetscInt k = 0; k < kinds->kinds; k++) R0 = PetscMin(R0, kinds->kind[k].length / (2 * PETSC_PI));
-  return PetscMin(GAP_CELLS * FluidSpecCellSize(&scene->fluid), GAP_RADII * R0);
+/* The gap of a packing: a cell, but at most a twentieth of R0; with the exact near field a film that markers resolve.
+ */
+static PetscErrorCode PackedGap(Scene scene, const Kinds *kinds, PetscReal *gap) {
+  PetscReal R0 = PETSC_MAX_REAL, ds = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < kinds->kinds; k++) {
+    Kind *kind = &kinds->kind[k];
+    if (!kind->M) PetscCall(KindFit(scene, kind));
+    R0 = PetscMin(R0, kind->length / (2 * PETSC_PI));
+    if (scene->coupling.near_field == NEAR_EXACT) ds = PetscMax(ds, kind->length / kind->M);
+  }
+  *gap = PetscMax(PetscMin(GAP_CELLS * FluidSpecCellSize(&scene->fluid), GAP_RADII * R0), SCENE_FILM * ds);
+  if (scene->vesicles.packing_gap > 0) *gap = scene->vesicles.packing_gap;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static void VesicleDirection(Scene scene, PetscInt v, PetscReal along[2]) {
@@ -51,12 +59,14 @@ static PetscErrorCode ScenePack(Scene scene, const Kinds *kinds, Pose pose[]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool lattice = own->packing_type == PACKING_LATTICE ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal cells = scene->coupling.near_field == NEAR_EXACT ? KERNEL_FOLDED_CELLS : KERNEL_WALL_CELLS;
-  const PetscReal gap = PackedGap(scene, kinds), wall = (cells + LEEWAY) * FluidSpecCellSize(&scene->fluid);
-  PackingSpec spec = {.gap = gap, .wall_gap = PetscMax(gap, wall), .seed = own->packing_seed};
+  const PetscReal wall = (cells + LEEWAY) * FluidSpecCellSize(&scene->fluid);
+  PackingSpec spec = {.seed = own->packing_seed};
   PetscReal *axes, part = 0, along[2];
   PetscMPIInt rank;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(scene->comm, &rank));
+  PetscCall(PackedGap(scene, kinds, &spec.gap));
+  spec.wall_gap = PetscMax(spec.gap, wall);
   PetscCall(PetscArraycpy(spec.box, scene->fluid.box, 4));
   for (int d = 0; d < 2; d++) spec.periodic[d] = scene->fluid.bc[d] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscMalloc1(2 * kinds->vesicles, &axes));

@@ -9,6 +9,8 @@
 PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
 PETSC_EXTERN PetscInt SceneKindOf(Scene scene, PetscInt vesicle);
 
+#define SCENE_FILM 0.6 /* marker spacings: the thickness of a thinner film is off by 1 %, now or as it thins */
+
 /* SceneRoom - box, periods and walls, as curves see them. Not collective. */
 PETSC_EXTERN CurveRoom SceneRoom(Scene scene);
 

@@ -16,8 +16,17 @@ PETSC_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
    with its reason (view.c). Collective. */
 PETSC_EXTERN PetscErrorCode SceneView(Scene scene, PetscViewer viewer);
 
+/* SceneSayModel - a line with the model of the fluid, its reason, the Reynolds number and the kind of steps (view.c).
+   Collective. */
+PETSC_EXTERN PetscErrorCode SceneSayModel(Scene scene);
+
 /* SceneCheckUsed - stop when the user gave an option of the table that the scene does not use. SceneCheckUnused - stop
    when the options database holds an option that nothing has read: one of a solver that the scene does not have, or one
    that there is not; when all solvers are set up (suggestions.c). Collective. */
 PETSC_EXTERN PetscErrorCode SceneCheckUsed(Scene scene);
 PETSC_EXTERN PetscErrorCode SceneCheckUnused(Scene scene);
+
+/* SceneHelp - print the table by groups (suggestions.c). With a word, case ignored: what the word stands for, the
+   options that have it in their name, and the names of those that have it in their help; where no name has it, these
+   options. FALSE when there is nothing. Not collective, and also before PETSc starts. */
+PETSC_EXTERN PetscBool SceneHelp(FILE *file, const char word[]);

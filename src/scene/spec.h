@@ -159,7 +159,8 @@ struct _p_Scene {
   SceneLimits limits;
   PetscBool view, allow_unused;
   Shape shape;                      /* the initial markers, equal on all ranks */
-  PetscReal reynolds;               /* speed R0/nu, see docs/fluid.md; 0 without vesicles */
+  PetscReal reynolds;               /* speed R0/nu, see docs/fluid.md; 0 without vesicles, NaN of a custom flow */
+  const char *why_inertia;          /* the reason of fluid.inertia */
   char warning[PETVES_MAX_MESSAGE]; /* of the model chosen; empty when there is none */
 };
 typedef const struct _p_Scene *Scene; /* resolved: all defaults are chosen, it is only read */

@@ -140,7 +140,7 @@ static const OptionRow table[] = {
   {"-vesicle_packing", OPT_REAL, AT(vesicles.packing), "0", "[0,1]", "area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center", &need_ellipses},
   {"-vesicle_packing_type", OPT_ENUM, AT(vesicles.packing_type), "random", "random|lattice", "random places and angles, or a rectangular lattice with -vesicle_angle", &need_packing},
   {"-vesicle_packing_seed", OPT_INT, AT(vesicles.packing_seed), "1", ">=0", "of the random packing: the same seed gives the same vesicles", &need_random},
-  {"-vesicle_packing_gap", OPT_REAL, AT(vesicles.packing_gap), "0", ">=0", "least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20 (length)", &need_packing},
+  {"-vesicle_packing_gap", OPT_REAL, AT(vesicles.packing_gap), "0", ">=0", "least distance of packed vesicles from one another and from walls; 0: a cell, at most R0/20, but at least 0.6 marker spacings with the exact near field (length)", &need_packing},
   {"-vesicle_bending", OPT_REALS, AT(membrane.stiffness), "0.01", ">=0", "c_b, bending stiffness, one for all, or one a vesicle or kind; 0 leaves bending out (length^5/time^2)", &need_vesicles},
   {"-vesicle_density_difference", OPT_REALS, AT(gravity.density), "0", "any", "density inside less density outside, over that outside; one for all, or one a vesicle or kind", &need_gravity},
   {"-vesicle_viscosity_ratio", OPT_REALS, AT(membrane.viscosity_ratio), "1", "[0.02,200]", "coupled: viscosity inside over -fluid_viscosity, which is outside; one for all, or one a vesicle or kind; other than 1 the flow is quasi-steady", &need_vesicles},
@@ -296,39 +296,6 @@ PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
 
 const OptionRow *SceneOptionRow(PetscInt i) {
   return i < TABLE_SIZE ? &table[i] : NULL;
-}
-
-/* A group goes to the first option of the next. */
-static const struct {
-  const char *first, *title;
-} groups[] = {{"-domain_box", "Domain"},
-              {"-flow_type", "Background flow"},
-              {"-fluid_viscosity", "Fluid"},
-              {"-vesicle_shape", "Vesicles"},
-              {"-obstacle_shape", "Obstacles"},
-              {"-tracer_file", "Tracers"},
-              {"-delta_type", "Scheme"},
-              {"-time_step", "Time"},
-              {"-helmholtz_type", "Fast solvers"},
-              {"-output_dir", "Output, checkpoints, restart"},
-              {"-time_wall_limit", "When to stop"},
-              {"-view", "Others"}};
-#define GROUPS (sizeof(groups) / sizeof(groups[0]))
-
-PetscBool SceneHelp(FILE *file, const char word[]) {
-  const char *title = NULL;
-  PetscBool any = PETSC_FALSE;
-  for (PetscInt i = 0; SceneOptionRow(i); i++) {
-    const OptionRow *row = SceneOptionRow(i);
-    for (size_t g = 0; g < GROUPS; g++)
-      if (!strcmp(groups[g].first, row->name)) title = groups[g].title;
-    if (word && !strstr(row->name, word)) continue;
-    if (title) fprintf(file, "%s%s\n", any ? "\n" : "", title);
-    title = NULL; /* has been printed */
-    OptionHelp(file, row, scene_defaults);
-    any = PETSC_TRUE;
-  }
-  return any;
 }
 
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {

@@ -9,11 +9,9 @@ PETSC_EXTERN const OptionDefault scene_defaults[];
 /* SceneReadOptions - every option of the table, or its default. Collective. */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 
-/* SceneOptionRow - the i-th option of the table, NULL past the last one. SceneHelp - print the table by groups; with a
-   word, the options that have it in their name: false when there is none. Not collective, and also before PETSc starts.
+/* SceneOptionRow - the i-th option of the table, NULL past the last one. Not collective, and also before PETSc starts.
  */
 PETSC_EXTERN const OptionRow *SceneOptionRow(PetscInt i);
-PETSC_EXTERN PetscBool SceneHelp(FILE *file, const char word[]);
 
 /* SceneWriteOptions - write every option of the table that the scene uses, defaults included, one "-name value" a
    line. */

@@ -1,5 +1,6 @@
 /* -view: the model in force. */
 #include "scene/scene.h"
+#include "scene/checks.h"
 #include "scene/properties.h"
 #include "scene/table.h"
 
@@ -12,22 +13,22 @@ static PetscErrorCode ViewRange(PetscViewer v, const char what[], PetscReal low,
 
 static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
-  static const char *const inertia[] = {"unsteady Stokes", "quasi-steady Stokes", "unsteady Stokes",
-                                        "Navier-Stokes, convection explicit"};
   const PetscBool no_mean = scene->fluid.inertia == INERTIA_NONE && scene->fluid.bc[0] == BC_PERIODIC &&
                                     scene->fluid.bc[1] == BC_PERIODIC
                                 ? PETSC_TRUE
                                 : PETSC_FALSE;
   PetscReal low = PETSC_MAX_REAL, high = 0;
+  char model[SCENE_MODEL];
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < scene->shape.vesicles; k++) {
     low = PetscMin(low, SceneViscosityRatio(scene, k));
     high = PetscMax(high, SceneViscosityRatio(scene, k));
   }
-  PetscCall(PetscViewerASCIIPrintf(v, "fluid: %s%s, nu = %g, solved for the %s\n", inertia[scene->fluid.inertia],
-                                   SceneGiven(scene, "-fluid_inertia") ? "" : " (default for this scene)",
-                                   (double)scene->fluid.nu, forms[scene->fluid.form]));
-  PetscCall(PetscViewerASCIIPrintf(v, "Reynolds number: %.4g\n", (double)scene->reynolds));
+  SceneModel(scene, model);
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: %s, nu = %g, solved for the %s\n", model, (double)scene->fluid.nu,
+                                   forms[scene->fluid.form]));
+  PetscCall(PetscViewerASCIIPrintf(v, scene->reynolds >= 0 ? "Reynolds number: %.4g\n" : "Reynolds number: not known\n",
+                                   (double)scene->reynolds));
   if (scene->shape.vesicles && SceneHasGravity(scene))
     PetscCall(PetscViewerASCIIPrintf(v, "gravity: %g,%g by the vesicles' density differences\n",
                                      (double)scene->gravity.g.v[0], (double)scene->gravity.g.v[1]));
@@ -83,6 +84,7 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
   const PetscReal *b = scene->fluid.box;
   PetscReal soft = PETSC_MAX_REAL;
   PetscInt few = PETSC_MAX_INT, many = 0;
+  char least[32] = "";
   PetscFunctionBeginUser;
   if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
   for (PetscInt k = 0; k < shape->vesicles; k++) {
@@ -94,10 +96,11 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
     PetscCall(
         PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1, M));
   }
+  if (few < many) PetscCall(PetscSNPrintf(least, sizeof(least), "%" PetscInt_FMT " to ", few));
   if (shape->vesicles > FEW)
     PetscCall(PetscViewerASCIIPrintf(
-        v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " to %" PetscInt_FMT " markers, area fraction %.4g%s\n",
-        shape->vesicles, few, many, (double)(ShapePolygonArea(shape) / ((b[1] - b[0]) * (b[3] - b[2]))),
+        v, "vesicles: %" PetscInt_FMT " of %s%" PetscInt_FMT " markers, area fraction %.4g%s\n", shape->vesicles, least,
+        many, (double)(ShapePolygonArea(shape) / ((b[1] - b[0]) * (b[3] - b[2]))),
         scene->vesicles.packing > 0 ? ", packed" : ""));
   if (!shape->vesicles || scene->membrane.bending == 0)
     PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
@@ -137,8 +140,10 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
     PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
                                      scene->coupling.kernel, derivatives[scene->membrane.derivative],
                                      ViewNearField(scene), SceneHasAreaTarget(scene) ? "on" : "off"));
-  PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g to t = %g\n", scene->scheme.type,
-                                   scene->scheme.order, (double)scene->time.dt, (double)scene->time.end));
+  PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g%s to t = %g\n", scene->scheme.type,
+                                   scene->scheme.order, (double)scene->time.dt,
+                                   scene->time.adapt == ADAPT_NONE ? "" : " at first, then by -time_adapt error,",
+                                   (double)scene->time.end));
   if (FluidSpecIsFree(&scene->fluid))
     PetscCall(PetscViewerASCIIPrintf(v, "unbounded fluid: no Stokes solve, the box is the window of the fields\n"));
   else
@@ -146,5 +151,15 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
                                      scene->fluid.poisson));
   PetscCall(ViewDefaults(scene, v));
   PetscCall(PetscViewerASCIIPopTab(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneSayModel(Scene s) {
+  char model[SCENE_MODEL], reynolds[64] = "";
+  PetscFunctionBeginUser;
+  SceneModel(s, model);
+  if (s->reynolds > 0) PetscCall(PetscSNPrintf(reynolds, sizeof(reynolds), ", Re = %.3g", (double)s->reynolds));
+  PetscCall(PetvesSay(s->comm, "petves: %s%s, %s %g\n", model, s->reynolds >= 0 ? reynolds : ", Re not known",
+                      s->time.adapt == ADAPT_NONE ? "fixed steps of" : "adaptive steps from", (double)s->time.dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,9 +6,8 @@
 
 #define THIN 0.5 /* edges below which a film that loses much is drained by the step's error */
 
-/* Films thinner than COARSE marker spacings have a thickness that is off by 1 %, now or as they thin (measured: from
-   0.3 to 0.65 spacings, docs/settings.md). At RESOLVED spacings the thickness is off by 0.1 to 0.4 %. */
-#define COARSE 0.6
+/* Films thinner than SCENE_FILM marker spacings have a thickness that is off by 1 %, now or as they thin (measured:
+   from 0.3 to 0.65 spacings, docs/settings.md). At RESOLVED spacings the thickness is off by 0.1 to 0.4 %. */
 #define RESOLVED 1.0
 
 #define FAR 4 /* longest mean edges up to which the distance of each vesicle is measured */
@@ -264,7 +263,7 @@ static PetscErrorCode WarnOfFilm(Scheme s, const CurveFilm *film) {
   PetscCall(SchemeWarn(s,
                        "the film between vesicle %" PetscInt_FMT " and %s is %.2g marker spacings thick after "
                        "step %" PetscInt_FMT ", time %g; below %g its thickness is off by 1 %% or more: try %s",
-                       v + 1, other, (double)film->spacings, s->state.step, (double)s->state.t, COARSE, remedy));
+                       v + 1, other, (double)film->spacings, s->state.step, (double)s->state.t, SCENE_FILM, remedy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -277,11 +276,11 @@ PetscErrorCode FilmsWarn(Scheme s) {
   if (!s->coupling->mobility->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeCurves(s, s->state.t, s->state.X));
   SeeCurves(s, s->work_all, &view);
-  PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, COARSE, &film));
+  PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, SCENE_FILM, &film));
   PetscReal thinness = -film.spacings;
   PetscCall(AgreeLargest(l->comm, &thinness, &whose));
   PetscCallMPI(MPI_Bcast(&film, sizeof(film), MPI_BYTE, whose, l->comm));
-  s->warnings.film = film.spacings < COARSE ? PETSC_TRUE : PETSC_FALSE;
+  s->warnings.film = film.spacings < SCENE_FILM ? PETSC_TRUE : PETSC_FALSE;
   if (s->warnings.film) PetscCall(WarnOfFilm(s, &film));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

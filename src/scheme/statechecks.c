@@ -1,15 +1,16 @@
 #include "scheme/statechecks.h"
 #include "base/agree.h"
 #include "curve/crossing.h"
+#include "scene/auto.h"
 #include "scheme/films.h"
 
-/* Limits of a shape's spectral tail: the part of its bending that is in the last third of its modes. With a tail above
-   ROUGH the steady angle or frequency is off by 0.05 % or more, with a tail below SMOOTH by less than 0.001 % (reduced
-   areas of 0.35 to 0.9, chi of 1 to 30, 17 to 91 markers, compared with 91 markers). */
-#define ROUGH 0.15
+/* A shape's spectral tail is the part of its bending that is in the last third of its modes. With a tail above 0.15
+   (SceneRoughTail) the steady angle or frequency is off by 0.05 % or more, with a tail below SMOOTH by less than 0.001
+   % (reduced areas of 0.35 to 0.9, chi of 1 to 30, 17 to 91 markers, compared with 91 markers). */
 #define SMOOTH 0.03
 /* Above this |X - X*|/R0 of a fixed step, markers are off by 1 % of R0 or more (docs/time.md). It is looked at from
-   step FIRST_JUDGED on: in the first steps the high modes of an ellipse die out, whatever the step. */
+   step FIRST_JUDGED on: in the first steps the high modes of an ellipse die out, whatever the step. What a warning says
+   of a shape before that may be true of the start only. */
 #define COARSE_STEP 0.02
 #define FIRST_JUDGED 4
 #define CORNER                                                                                                         \
@@ -102,12 +103,13 @@ static PetscErrorCode CheckSpectrum(Scheme s, PetscInt v, const PetscScalar X[],
   const PetscInt n = LayoutCount(m->layout, v);
   const PetscReal tail = SpectralTail(m->spectral[v], 2. / 3, X);
   PetscFunctionBeginUser;
-  if (tail < ROUGH) PetscFunctionReturn(PETSC_SUCCESS);
+  if (tail < SceneRoughTail(s->scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(text, PETVES_MAX_MESSAGE,
                           "%" PetscInt_FMT " markers do not resolve vesicle %" PetscInt_FMT " after step %" PetscInt_FMT
                           ", time %g: %.2g of its bending is in the last third of its "
-                          "modes, %g is good; try -vesicle_markers %" PetscInt_FMT,
+                          "modes, %g is good%s; try -vesicle_markers %" PetscInt_FMT,
                           n, v + 1, s->state.step, (double)s->state.t, (double)tail, SMOOTH,
+                          s->state.step < FIRST_JUDGED ? ", though the flow may smooth a first shape" : "",
                           Resolving(n, SpectralTail(m->spectral[v], 1. / 3, X), tail)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -160,15 +160,16 @@ def test_no_option_prints_the_usage(ranks, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = mpirun([PETVES], ranks, PETSC_OPTIONS="")
     assert done.returncode == 1 and "usage:" in done.stderr and done.stdout == "" and not list(tmp_path.iterdir())
-    assert done.stderr.count("usage:") == 1 and "runs/default.opts" in done.stderr
+    assert done.stderr.count("usage:") == 1 and "petves run shear" in done.stderr
 
 
 def test_stray_word_alone(tmp_path, monkeypatch):
-    """An options file without -options_file used to run the default scene."""
+    """No file, scene or tool: the default scene is not run."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "my.opts").write_text("-time_end 1\n")
     done = mpirun([PETVES, "my.opts"], 2)
-    line = 'petves: error: "my.opts": no option, nor the value of one; allowed: -name value, or petves run FILE'
+    line = (
+        'petves: error: "my.opts": no option, file, scene or command; allowed: -name value, or what petves help lists'
+    )
     assert done.returncode == 1 and without_mpirun(done.stderr) == [line] and not (tmp_path / "out").exists()
 
 

@@ -1,6 +1,7 @@
 """What a new user meets first: help, version, the manual page and completion, the words run and plot, the Makefile."""
 
 import ast
+import math
 import os
 import re
 import shutil
@@ -36,6 +37,7 @@ def test_help_is_half_a_screen(word, ranks, here):
 def test_help_names_scenes_that_are_there():
     text = mpirun([PETVES, "-help"], 1).stdout
     named = re.findall(r"\b(?:runs|docs)/\w+\.\w+|README\.md", text)
+    named += [f"runs/{scene}.opts" for scene in re.findall(r"^  petves run (\w+)", text, re.MULTILINE)]
     assert len(set(named)) >= 4 and all((ROOT / name).is_file() for name in named)
 
 
@@ -60,13 +62,37 @@ def test_help_of_a_word():
     names = [option.name for option in described(PETVES)]
     text = mpirun([PETVES, "-help", "flow"], 1).stdout
     assert re.findall(r"^  (-\w+)", text, re.MULTILINE) == [name for name in names if "flow" in name]
-    assert max(map(len, text.splitlines())) <= 110
+    assert max(map(len, text.splitlines())) <= 110 and "Also in the help of -fluid_inertia" in text
+
+
+@pytest.mark.parametrize(
+    "word, found",
+    [
+        ("kappa", "-vesicle_bending"),
+        ("channel", "-flow_drive"),
+        ("Pressure", "-flow_drive"),
+        ("stenosis", "-obstacle_shape"),
+        ("reynolds", "-fluid_inertia"),
+        ("GPU", "no graphics processors"),
+    ],
+)
+def test_help_of_a_word_that_no_name_has(word, found):
+    """Help texts, what is allowed, and words for what there is or is not; case is ignored."""
+    done = mpirun([PETVES, "help", word], 1)
+    assert done.returncode == 0 and found in done.stdout and len(done.stdout.splitlines()) < 40
+    assert max(map(len, done.stdout.splitlines())) <= 110
+
+
+@pytest.mark.parametrize("words", [["help"], ["-help"], ["help", "plot"], ["-help", "plot"]])
+def test_help_is_a_word_too(words):
+    done = mpirun([PETVES, *words], 1)
+    assert done.returncode == 0 and done.stdout.startswith("usage: petves plot" if "plot" in words else "petves: inext")
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_help_of_a_word_that_no_option_has(ranks, here):
-    done = mpirun([PETVES, "-help", "voltage"], ranks)
-    line = "petves: error: -help voltage: in no option's name; allowed: options, all, or part of a name"
+    done = mpirun([PETVES, "-help", "cheese"], ranks)
+    line = "petves: error: -help cheese: in no option's name or help; allowed: options, all, a tool, or a word"
     assert done.returncode == 1 and without_mpirun(done.stderr) == [line]
 
 
@@ -103,6 +129,37 @@ def test_run_takes_a_file(here):
     done = mpirun([PETVES, "run", "none.opts"], 1)
     assert done.returncode == 1 and done.stderr.startswith("petves: error: -options_file none.opts: cannot be opened")
     assert mpirun([PETVES, "run"], 1, PETSC_OPTIONS="").returncode == 1
+
+
+@pytest.mark.parametrize(
+    "words, ranks", [(["run", "stirring"], 2), (["stirring"], 1), ([str(ROOT / "runs/stirring.opts")], 1)]
+)
+def test_scene_by_name_with_the_file_beside_it(words, ranks, here):
+    """A scene that comes with petves runs from anywhere, with or without run; its curve lies beside it."""
+    done = mpirun([PETVES, *words, "-time_end", "0", "-output_dir", "out"], ranks)
+    assert done.returncode == 0, done.stderr
+    (line,) = re.findall(r"^-obstacle_file (.*)", Path("out/resolved.opts").read_text(), re.MULTILINE)
+    assert Path(line).resolve() == ROOT / "runs" / "stirring.txt"
+
+
+def test_file_beside_an_options_file(here):
+    """What a file names is looked for where the program was started first, then beside the file, included files too."""
+    Path("scenes").mkdir()
+    Path("scenes/inner.opts").write_text("-domain_cells 24,24\n-vesicle_shape file\n-vesicle_file curve.txt\n")
+    Path("scenes/outer.opts").write_text("-options_file inner.opts\n-time_end 0\n")
+    circle = [f"{0.5 * math.cos(k / 5):.9f} {0.5 * math.sin(k / 5):.9f}" for k in range(31)]
+    Path("scenes/curve.txt").write_text("\n".join(circle) + "\n")
+    assert mpirun([PETVES, "scenes/outer.opts", "-output_dir", "a"], 2).returncode == 0
+    Path("curve.txt").write_text("\n".join(circle[:-1]) + "\n")
+    assert mpirun([PETVES, "scenes/outer.opts", "-output_dir", "b"], 1).returncode == 0
+    for folder, file in (("a", "scenes/curve.txt"), ("b", "curve.txt")):
+        assert f"-vesicle_file {file}\n" in Path(folder, "resolved.opts").read_text()
+
+
+def test_tool_takes_options_of_one_dash(here):
+    """As runs have them: the answer is of the folder, not of the option."""
+    done = mpirun([PETVES, "plot", "nowhere", "-width", "3.4"], 1)
+    assert done.returncode == 1 and "nowhere: no such folder" in done.stderr
 
 
 def test_tools_are_python_s(here):

@@ -107,7 +107,7 @@ def key_numbers(run: Run) -> list[tuple[str, str]]:
     rows.append(("iterations a step", ", ".join(f"{name} {x.mean():.1f}" for name, x in means.items() if x.any())))
     rows.append(("fast solves a step", f"{s['nsolve'][1:].mean():.0f}" if len(s["nsolve"]) > 1 else ""))
     rows.append(("seconds in steps", f"{s['wall'].sum():.3g}"))
-    rows.append(("Reynolds number", f"{run.summary['reynolds']:.3g}" if "reynolds" in run.summary else ""))
+    rows.append(("Reynolds number", "" if (Re := run.summary.get("reynolds")) is None else f"{Re:.3g}"))
     versions = run.summary.get("versions", {})
     rows.append(("ranks", str(run.summary.get("ranks", ""))))
     rows.append(("petves", ", ".join(filter(None, (versions.get("petves"), run.summary.get("git_commit"))))))
