@@ -95,7 +95,7 @@ class Options(TypedDict, total=False):
     poisson_type: Literal['fftw_tridiagonal', 'fftw', 'hypre'] | None  # fast solver of the pressure Poisson problems
     output_dir: Value  # folder of every output file
     output_overwrite: Literal['true', 'false'] | None  # replace the results that -output_dir holds already
-    output_every: Value  # time between saved fields; not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)
+    output_every: Value  # time between saved fields; adaptive steps end at its multiples; not given: 0.1, or so many times more (1, 2, 5, 10 ...) that there are at most 100 (time)
     output_precision: Literal['double', 'single'] | None  # of saved velocity and pressure; single takes half the room
     checkpoint_every: Value  # steps between checkpoints; 0 writes one at the end only
     checkpoint_keep: Value  # checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on

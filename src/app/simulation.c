@@ -195,14 +195,15 @@ static PetscBool IsSteady(Simulation s) {
   return steady;
 }
 
-/* One step, of at most `most`, its row of series.csv and the files that are due. */
-static PetscErrorCode TakeStep(Simulation s, PetscReal most, const char **failure) {
+/* One step, to the time `until` at most, its row of series.csv and the files that are due. Adaptive steps end at the
+   times of frames. */
+static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failure) {
   const StepReport *report = &s->scheme->report;
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
-  PetscCall(SchemeStep(s->scheme, most));
+  PetscCall(SchemeStep(s->scheme, s->scheme->policy.adaptive ? PetscMin(until, s->output->next) : until));
   *failure = *report->failure ? report->failure : NULL;
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputStep(s->output));
@@ -224,7 +225,7 @@ PetscErrorCode SimulationBegin(Simulation s) {
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
   const PetscReal t = s->scheme->state.t, end = s->scene->time.end;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end - t, failure));
+  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,7 +245,7 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
     PetscCall(
         PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", s->scheme->state.step, why));
   } else {
-    PetscCall(TakeStep(s, until - t, failure));
+    PetscCall(TakeStep(s, until, failure));
     *stepped = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,7 +4,7 @@
 static PetscReal OutputNextTime(Output o) {
   const State *q = &o->scheme->state;
   const PetscReal every = o->scene->output.every;
-  return every * (PetscFloorReal((q->t + 1e-9 * q->dt) / every) + 1);
+  return StepDecimal(every * (PetscFloorReal((q->t + 1e-9 * q->dt) / every) + 1));
 }
 
 /* Remove what would be taken for this run's: the summary, and checkpoints of a run that is written over. */

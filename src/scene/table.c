@@ -192,7 +192,7 @@ static const OptionRow table[] = {
   {"-poisson_type", OPT_NAME, AT(fluid.poisson), "fftw_tridiagonal", "fftw_tridiagonal|fftw|hypre", "fast solver of the pressure Poisson problems", &need_grid, MAY_CHANGE},
   {"-output_dir", OPT_PATH, AT(output.dir), "out/run", "", "folder of every output file", NULL, MAY_CHANGE},
   {"-output_overwrite", OPT_BOOL, AT(output.overwrite), "false", "true|false", "replace the results that -output_dir holds already", NULL, MAY_CHANGE},
-  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields", NULL, MAY_CHANGE},
+  {"-output_every", OPT_REAL, AT(output.every), "0.1", ">0", "time between saved fields; adaptive steps end at its multiples", NULL, MAY_CHANGE},
   {"-output_precision", OPT_ENUM, AT(output.precision), "double", "double|single", "of saved velocity and pressure; single takes half the room"},
   {"-checkpoint_every", OPT_INT, AT(output.checkpoint_every), "100", ">=0", "steps between checkpoints; 0 writes one at the end only", NULL, MAY_CHANGE},
   {"-checkpoint_keep", OPT_INT, AT(output.checkpoint_keep), "2", "[1,100]", "checkpoints kept: checkpoint.h5, the one before it checkpoint_1.h5, and so on", NULL, MAY_CHANGE},

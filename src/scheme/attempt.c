@@ -144,9 +144,11 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
 }
 
 /* The plan's order, as far as states are known; order 3 with steps that grow by no more than sqrt(2), as its limit of
-   stability for steps that go on growing is 1.53. */
+   stability for steps that go on growing is 1.53. Adaptive steps do not go on growing by more; one may be twice as long
+   as a step that was shortened. */
 static PetscInt Order(Scheme s, const History *h) {
-  const PetscBool even = h->n > 2 && h->step[0] <= 1.42 * h->step[1] ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal most = s->policy.adaptive ? 2.01 : 1.42;
+  const PetscBool even = h->n > 2 && h->step[0] <= most * h->step[1] ? PETSC_TRUE : PETSC_FALSE;
   return PetscMin(PetscMin(s->plan.order, h->n), even ? 3 : 2);
 }
 

@@ -72,7 +72,7 @@ static PetscErrorCode Look(Scheme s, Coupled *d, StepTrial *trial) {
 static PetscErrorCode DecideSize(Scheme s, PetscReal speed, PetscReal most, PetscReal *dt) {
   const PetscReal limit = s->scene->time.cfl_limit * s->fluid->grid->h;
   PetscFunctionBeginUser;
-  *dt = StepSize(&s->policy, &s->plan, speed > 0 ? limit / speed : PETSC_MAX_REAL, most);
+  *dt = StepSize(&s->policy, &s->plan, s->state.dt_last, speed > 0 ? limit / speed : PETSC_MAX_REAL, most);
   PetscCallMPI(MPI_Bcast(dt, 1, MPIU_REAL, 0, s->scene->comm));
   PetscCallMPI(MPI_Bcast(&s->plan.level, 1, MPIU_INT, 0, s->scene->comm));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -94,7 +94,8 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
+PetscErrorCode SchemeStep(Scheme s, PetscReal until) {
+  const PetscReal t = s->state.t;
   const PetscInt solves = FluidCountSolves(s->fluid);
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
@@ -103,11 +104,11 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal most) {
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   PetscCall(SchemeKeep(s));
   FluidClearFailure(s->fluid);
-  s->state.dt = s->policy.adaptive ? s->policy.base : StepFixed(&s->policy, s->state.t, most);
-  PetscCall(s->ops.step(s, most));
+  s->state.dt = s->policy.adaptive ? s->policy.base : StepFixed(&s->policy, t, until);
+  PetscCall(s->ops.step(s, until - t));
   s->report.solves = FluidCountSolves(s->fluid) - solves;
   if (!*s->report.failure) {
-    s->state.t += s->state.dt;
+    s->state.t = StepTime(&s->policy, t, s->state.dt, until);
     s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;
     PetscCall(SchemeCheck(s));

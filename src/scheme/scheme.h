@@ -11,10 +11,10 @@ PETSC_EXTERN PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*c
 PETSC_EXTERN PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[], Scheme *scheme);
 PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
-/* SchemeStep - one time step: the policy's, at most `most`, the time that is left (PETSC_MAX_REAL: no end). Afterwards
+/* SchemeStep - one time step: the policy's, to the time `until` at most (PETSC_MAX_REAL: no end). Afterwards
    scheme->report says what was done; when report.failure is not empty the step could not be taken, or led to a state
    that is refused, and the state is the last good one. Collective. */
-PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal most);
+PETSC_EXTERN PetscErrorCode SchemeStep(Scheme scheme, PetscReal until);
 
 /* SchemeRemember, SchemeRecall - what the solvers have kept from earlier steps (when their blocks were made, and where
    the markers were), as SchemeMemorySize numbers for a checkpoint, and made again from them. Collective. */

@@ -1,13 +1,16 @@
 #include "scheme/stepcontrol.h"
+#include <stdlib.h>
 
 #define FIRST_LEVEL (-10) /* the first step is base/32 */
 #define LEAST_LEVEL (-80)
 #define MOST_LEVEL 40
 #define SAFETY 0.9
 #define GROWTH                                                                                                         \
-  2            /* levels that a step may grow by; 1 at order 3, which is stable for steps that grow by 1.53 at most    \
-                */
-#define HALF 2 /* levels of a factor of 2 */
+  2              /* levels that a step may grow by; 1 at order 3, which is stable for steps that grow by 1.53 at most  \
+                  */
+#define HALF 2   /* levels of a factor of 2 */
+#define EQUAL 10 /* steps to a time to end at that are made equal */
+#define STRETCH 1.1 /* of them, at most: SAFETY leaves that much */
 
 StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
   return (StepPolicy){.adaptive = scene->time.adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,
@@ -21,18 +24,30 @@ PetscInt StepFirstLevel(void) {
   return FIRST_LEVEL;
 }
 
-/* The rounding of a sum of n equal steps, which may all be rounded the same way: at most n^2 eps/4 of a step. */
-static PetscReal Rounding(const StepPolicy *p, PetscReal until) {
-  const PetscReal steps = p->adaptive ? 0 : until / p->base;
-  return p->base * PetscMin(0.25, PetscMax(1e-9, PETSC_MACHINE_EPSILON * steps * steps));
+/* Of a time, which has 15 digits. */
+static PetscReal Rounding(const StepPolicy *p, PetscReal t) {
+  return 1e-9 * p->base + 1e-14 * t;
+}
+
+PetscReal StepDecimal(PetscReal t) {
+  char digits[32];
+  (void)snprintf(digits, sizeof(digits), "%.15g", (double)t);
+  return strtod(digits, NULL);
+}
+
+PetscReal StepTime(const StepPolicy *p, PetscReal t, PetscReal dt, PetscReal until) {
+  const PetscReal end = t + dt, n = PetscFloorReal(end / p->base + 0.5);
+  if (PetscAbsReal(until - end) <= Rounding(p, end)) return until;
+  if (p->adaptive) return end;
+  return StepDecimal(PetscAbsReal(n * p->base - end) <= 1e-14 * end ? n * p->base : end);
 }
 
 PetscBool StepFinished(const StepPolicy *p, PetscReal t, PetscReal until) {
-  return t >= until - Rounding(p, until) ? PETSC_TRUE : PETSC_FALSE;
+  return t >= until - Rounding(p, t) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscReal StepFixed(const StepPolicy *p, PetscReal t, PetscReal most) {
-  const PetscReal rounding = Rounding(p, t + most);
+PetscReal StepFixed(const StepPolicy *p, PetscReal t, PetscReal until) {
+  const PetscReal most = until - t, rounding = Rounding(p, t);
   if (most >= 2 * p->base - rounding || PetscAbsReal(most - p->base) <= rounding) return p->base;
   return most > p->base ? most / 2 : most; /* a step that is far shorter than the one before adds noise (StepSize) */
 }
@@ -46,14 +61,13 @@ static PetscInt LevelOfSize(const StepPolicy *p, PetscReal dt, PetscReal above) 
   return (PetscInt)PetscFloorReal(2 * PetscLog2Real(dt / p->base) + above);
 }
 
-PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal courant, PetscReal most) {
+PetscReal StepSize(const StepPolicy *p, StepPlan *plan, PetscReal last, PetscReal courant, PetscReal most) {
   const PetscReal limit = PetscMin(courant, p->max_step > 0 ? p->max_step : PETSC_MAX_REAL);
-  PetscReal dt;
   if (limit < PETSC_MAX_REAL) plan->level = PetscMin(plan->level, LevelOfSize(p, limit, 1e-9));
-  dt = SizeOfLevel(p, plan->level);
-  if (most <= dt * (1 + 1e-12)) return most;
-  /* a last step that is far shorter than the one before leaves noise in the velocity, a difference over the step */
-  return most < 2 * dt ? most / 2 : dt;
+  const PetscReal grown = last > 0 ? 2 * last : PETSC_MAX_REAL, dt = PetscMin(SizeOfLevel(p, plan->level), grown);
+  const PetscReal longest = PetscMax(dt, PetscMin(PetscMin(limit, grown), STRETCH * dt));
+  if (most > EQUAL * dt) return dt;
+  return most / PetscMax(PetscFloorReal(most / dt + 0.5), PetscCeilReal(most / longest - 1e-12));
 }
 
 /* The error X - X* is of the formula's order in dt. In a first step X* = X, and the error is not tested, as it is the
@@ -71,7 +85,7 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
   PetscReal factor = SAFETY * (t->first ? 1 : t->order > 2 ? PetscCbrtReal(spare) : PetscSqrtReal(spare));
   PetscInt wanted;
   if (!t->solved) {
-    plan->level -= HALF;
+    plan->level = LevelOfSize(p, t->dt, 1e-9) - HALF;
     return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
   }
   if (too_far) factor = PetscMin(factor, SAFETY * p->max_move / (t->speed * t->dt));
@@ -83,8 +97,8 @@ StepVerdict StepJudge(const StepPolicy *p, const StepTrial *t, StepPlan *plan) {
     plan->level = PetscMin(plan->level - 1, wanted);
     return plan->level < LEAST_LEVEL ? STEP_GIVE_UP : STEP_REPEAT;
   }
-  const PetscBool whole = t->dt >= SizeOfLevel(p, plan->level) * (1 - 1e-12) ? PETSC_TRUE : PETSC_FALSE;
-  if (t->first || fixed || !whole) return STEP_ACCEPT; /* the attempt does not tell what a larger step would do */
+  const PetscBool part = t->dt < 0.5 * SizeOfLevel(p, plan->level) ? PETSC_TRUE : PETSC_FALSE;
+  if (t->first || fixed || part) return STEP_ACCEPT; /* the attempt does not tell what a larger step would do */
   wanted = PetscMin(PetscMin(wanted, plan->level + GROWTH - (t->order > 2)), MOST_LEVEL);
   if (p->max_move > 0 && t->speed > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY * p->max_move / t->speed, 0));
   if (t->loss > 0) wanted = PetscMin(wanted, LevelOfSize(p, SAFETY / t->loss * t->dt, 0));

@@ -40,18 +40,23 @@ PETSC_EXTERN StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles);
 /* StepFirstLevel - the level of an adaptive run's first step. */
 PETSC_EXTERN PetscInt StepFirstLevel(void);
 
-/* StepFinished - whether the time t is `until`, up to the rounding of a sum of steps. */
+/* StepDecimal - a time by its first 15 digits: 0.3 of 3 x 0.1. StepTime - the time at the end of a step of size dt from
+   time t: `until` where it ends there; of a fixed step else as decimals, a multiple of the base where it is one, so
+   that rounding does not add up. StepFinished - whether the time t is `until`, up to rounding. */
+PETSC_EXTERN PetscReal StepDecimal(PetscReal t);
+PETSC_EXTERN PetscReal StepTime(const StepPolicy *policy, PetscReal t, PetscReal dt, PetscReal until);
 PETSC_EXTERN PetscBool StepFinished(const StepPolicy *policy, PetscReal t, PetscReal until);
 
-/* StepFixed - the next step of a fixed policy at time t with the time `most` left: the base, except that the last one
-   or two steps are shortened to end exactly. A function of its arguments alone, so that a restart takes the same steps.
- */
-PETSC_EXTERN PetscReal StepFixed(const StepPolicy *policy, PetscReal t, PetscReal most);
+/* StepFixed - the next step of a fixed policy from time t to `until` at most: the base, except that the last one or two
+   steps are shortened to end exactly. A function of its arguments alone, so that a restart takes the same steps. */
+PETSC_EXTERN PetscReal StepFixed(const StepPolicy *policy, PetscReal t, PetscReal until);
 
 /* StepSize - the step of the next attempt of an adaptive policy: that of the plan's level, which is lowered to what
-   max_step and the CFL limit `courant` (PETSC_MAX_REAL: none) allow. At most `most`, which the last two steps divide
-   equally. */
-PETSC_EXTERN PetscReal StepSize(const StepPolicy *policy, StepPlan *plan, PetscReal courant, PetscReal most);
+   max_step and the CFL limit `courant` (PETSC_MAX_REAL: none) allow, and at most twice the step `last` (0: none). The
+   last ten steps of the time `most` that is left are equal, so that none is short; they may be a tenth above the size
+   of the level, within the limits. */
+PETSC_EXTERN PetscReal StepSize(const StepPolicy *policy, StepPlan *plan, PetscReal last, PetscReal courant,
+                                PetscReal most);
 
 /* StepJudge - the verdict on an attempt: accept it, repeat it with the smaller step of the plan's new level, or give up
    because no smaller step is left. An accepted attempt leaves the level of the next step in the plan. A function of its

@@ -1,4 +1,5 @@
-"""-time_end is reached exactly: the last steps are shortened, in the same way wherever a run was interrupted."""
+"""Times are exact: -time_end is reached, in the same way wherever a run was interrupted, fixed steps are at their multiples, and adaptive
+steps end at the times of frames."""
 
 import shutil
 
@@ -31,9 +32,44 @@ def test_an_end_between_two_steps(tmp_path):
     assert errors[0] < 0.5 * errors[1] < 1e-3, "of second order still"
 
 
-def test_a_multiple_of_the_step_has_the_times_it_always_had(tmp_path):
-    series = run_petves(tmp_path / "run", f"{SCHEMES['split']} {SMALL} -time_step 0.1 -time_end 3").series
-    assert series["time"].tolist() == np.add.accumulate([0] + [0.1] * 30).tolist() and set(series["dt"]) == {0.1}
+def saved(run) -> list[float]:
+    """Return the saved times of a run."""
+    with h5py.File(run.folder / "run.h5") as file:
+        return file["time"][:].tolist()
+
+
+def test_fixed_steps_are_at_their_multiples(tmp_path):
+    """In decimals, not sums: 0.3, not 0.1 + 0.1 + 0.1; after a restart with another step too."""
+    options = f"{SCHEMES['split']} -domain_cells 24,24 -output_every 0.7 -time_step"
+    run = run_petves(tmp_path / "run", f"{options} 0.1 -time_end 3")
+    assert run.series["time"].tolist() == [k / 10 for k in range(31)] and set(run.series["dt"]) == {0.1}
+    assert saved(run) == [0, 0.7, 1.4, 2.1, 2.8, 3]
+    on = run_petves(run.folder, f"{options} 0.07 -time_end 4.4 -restart {run.folder}/checkpoint.h5")
+    assert on.series["time"].tolist()[31:] == [(300 + 7 * k) / 100 for k in range(1, 21)]
+
+
+def test_adaptive_steps_end_at_the_times_of_frames(tmp_path):
+    """Whatever the tolerance, and after a restart with the same bits. It takes hardly more steps, none of which is short."""
+    options = (
+        f"{SCHEMES['adaptive']} -domain_cells 24,24 -time_end 1 -time_step 0.01 -checkpoint_every 10 -checkpoint_keep 9"
+    )
+    free = run_petves(tmp_path / "free", f"{options} -output_every 10")
+    runs = {
+        tol: run_petves(tmp_path / tol, f"{options} -output_every 0.1 -time_adapt_tol {tol}")
+        for tol in ("1e-3", "1e-4")
+    }
+    assert [saved(run) for run in runs.values()] == [[k / 10 for k in range(11)]] * 2
+    whole = runs["1e-3"]
+    dt = whole.series["dt"][1:]
+    print(f"{len(dt)} steps with frames, {len(free.series['dt']) - 1} without: {dt}")
+    assert len(dt) <= 1.1 * len(free.series["dt"]) and (dt[1:] > 0.4 * dt[:-1]).all()
+    for path in sorted(whole.folder.glob("checkpoint_*.h5")):
+        folder = tmp_path / path.stem
+        shutil.copytree(whole.folder, folder)
+        on = run_petves(folder, f"{options} -output_every 0.1 -time_adapt_tol 1e-3 -restart {folder / path.name}")
+        assert saved(on) == saved(whole) and without_wall(folder / "series.csv") == without_wall(
+            whole.folder / "series.csv"
+        )
 
 
 @pytest.mark.parametrize("name", ["split", "order_2"])

@@ -38,9 +38,9 @@ KINDS = {
     "split": f"{BOX} -scheme_type split",
     "penalty": f"{BOX} -scheme_type penalty -time_step 0.001 -time_end 0.003",
     "hypre": f"{BOX} -scheme_type split -helmholtz_type hypre -poisson_type hypre",
-    "adaptive": f"{STOKES} -time_adapt error -time_adapt_max_step 0.1",
+    "adaptive": f"{STOKES} -time_adapt error -time_adapt_max_step 0.1 -output_every 0.05",
     "steady": f"{STOKES} -time_end 0.3 -time_step 0.05 -time_steady_tol 0.01",
-    "auto": f"-fluid_viscosity 1 {VESICLE} -time_step 0.02 -time_end 0.1 -scheme_auto 0.01",
+    "auto": f"-fluid_viscosity 1 {VESICLE} -time_step 0.02 -time_end 0.1 -scheme_auto 0.01 -output_every 0.05",
 }
 COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
 

@@ -89,7 +89,7 @@ static PetscErrorCode Follow(const char options[], PetscReal dt, Law *law) {
   before = first;
   for (PetscInt k = 1; k <= (few ? FEW_STEPS : STEPS); k++) {
     PetscReal now = 0, now_g = 0, rise;
-    PetscCall(SchemeStep(r.scheme, dt));
+    PetscCall(SchemeStep(r.scheme, PETSC_MAX_REAL));
     if (*r.scheme->report.failure) break;
     law->steps = k;
     PetscCall(StateEnergy(&r, &now));

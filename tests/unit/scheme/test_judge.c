@@ -11,7 +11,7 @@
 typedef struct {
   const char *name;
   PetscInt level;
-  PetscReal part;   /* of the level's step that was tried: less than 1 at the end of a run */
+  PetscReal part;   /* of the level's step that was tried: another than 1 before a time of output */
   PetscReal before; /* error of the attempt before in the same step, NONE without */
   PetscReal error, speed, ratio;
   PetscBool unsolved, first;
@@ -34,8 +34,12 @@ static const Row rows[] = {
   {"an error equal to the tolerance is accepted", 0, 1, NONE, TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -1},
   {"no growth above the largest level", 40, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 40},
   {"nor beyond it by half a growth", 39, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 40},
-  {"a part of a step says nothing of a larger one", 0, 0.3, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
-  {"nor of a smaller one", 0, 0.3, NONE, 0.95 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"less than half a step says nothing of a larger one", 0, 0.49, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"nor of a smaller one", 0, 0.49, NONE, 0.95 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"half a step lets steps grow", 0, 0.51, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 2},
+  {"or stay as they are", 0, 0.71, NONE, 0.25 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
+  {"or shrink", 0, 0.71, NONE, 0.5 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -1},
+  {"a step that was stretched keeps its level", 0, 1.1, NONE, 0.9 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
   {"growth no further than markers may move", 0, 1, NONE, SMALL, 0.05, 1, .verdict = STEP_ACCEPT, .next = 1},
   {"or smaller when they nearly moved too far", 0, 1, NONE, SMALL, 0.095, 1, .verdict = STEP_ACCEPT, .next = -1},
   {"edges of ratio 2 are even enough", 0, 1, NONE, SMALL, 0, 2, .verdict = STEP_ACCEPT, .next = 2},
@@ -53,6 +57,8 @@ static const Row rows[] = {
   /* not solved: half the step, whatever the rest says */
   {"not solved", 0, 1, NONE, NAN, NAN, NAN, PETSC_TRUE, .verdict = STEP_REPEAT, .next = -2},
   {"not solved, with numbers that would do", 6, 1, NONE, SMALL, 0, 1, PETSC_TRUE, .verdict = STEP_REPEAT, .next = 4},
+  {"a part of a step not solved: half of the part", 0, 0.3, NONE, NAN, NAN, NAN, PETSC_TRUE,
+   .verdict = STEP_REPEAT, .next = -6},
   {"a first step not solved", -10, 1, NONE, 0, 0, 1, PETSC_TRUE, PETSC_TRUE, STEP_REPEAT, -12},
   {"not solved at the last levels", -78, 1, NONE, 0, 0, 1, PETSC_TRUE, .verdict = STEP_REPEAT, .next = -80},
   {"not solved below them", -79, 1, NONE, 0, 0, 1, PETSC_TRUE, .verdict = STEP_GIVE_UP, .next = -81},
@@ -164,6 +170,7 @@ static const struct {
   PetscReal max_step, courant, most; /* max_step 0, courant and most NONE: no limit */
   PetscReal dt;
   PetscInt next;
+  PetscReal last; /* 0: none */
 } sizes[] = {{"a level's step", 2, 0, NONE, NONE, 2, 2},
              {"an odd level's step", 1, 0, NONE, NONE, PETSC_SQRT2, 1},
              {"max_step lowers the level", 2, 1, NONE, NONE, 1, 0},
@@ -176,13 +183,23 @@ static const struct {
              {"the lower one of two limits", 2, 1, 0.5, NONE, 0.5, -2},
              {"whichever it is", 2, 0.5, 1, NONE, 0.5, -2},
              {"a whole step, far from the end", 0, 0, NONE, 100, 1, 0},
+             {"a whole step, more than ten from it", 0, 0, NONE, 10.4, 1, 0},
+             {"a ninth of what is left, less than ten steps from it", 0, 0, NONE, 9.4, 9.4 / 9, 0},
+             {"an eighth, hardly less", 0, 0, NONE, 7.6, 7.6 / 8, 0},
              {"a whole step, two from the end", 0, 0, NONE, 2, 1, 0},
              {"half of what is left, less than two steps from it", 0, 0, NONE, 1.5, 0.75, 0},
-             {"half of what is left, hardly more than a step", 0, 0, NONE, 1.001, 0.5005, 0},
+             {"half of what is left, a tenth more than a step", 0, 0, NONE, 1.101, 0.5505, 0},
+             {"what is left, hardly more than a step", 0, 0, NONE, 1.099, 1.099, 0},
              {"what is left, where a step reaches it", 0, 0, NONE, 1, 1, 0},
              {"what is left, a rounding above a step", 0, 0, NONE, 1 + 1e-13, 1 + 1e-13, 0},
              {"what is left, less than a step", 0, 0, NONE, 0.3, 0.3, 0},
-             {"half of what is left, of a lowered step", 6, 0, 1, 1.5, 0.75, 0}};
+             {"half of what is left, of a lowered step", 6, 0, 1, 1.5, 0.75, 0},
+             {"a limit holds for equal steps too", 0, 1, NONE, 1.05, 0.525, 0},
+             {"but for what is above it by rounding", 0, 1, NONE, 2 + 1e-13, 1 + 5e-14, 0},
+             {"the Courant limit too", 0, 0, 1.02, 9.4, 0.94, 0},
+             {"twice the step before", 4, 0, NONE, NONE, 2, 4, .last = 1},
+             {"half of what is left, of twice the step before", 4, 0, NONE, 2.1, 1.05, 4, .last = 1},
+             {"the level's step after a longer one", 0, 0, NONE, NONE, 1, 0, .last = 3}};
 
 static PetscErrorCode CheckSizes(PetscReal base) {
   PetscFunctionBeginUser;
@@ -191,7 +208,7 @@ static PetscErrorCode CheckSizes(PetscReal base) {
     StepPlan plan = {.level = sizes[k].level, .before = NONE};
     PetscReal dt;
     policy.max_step = base * sizes[k].max_step;
-    dt = StepSize(&policy, &plan, sizes[k].courant < NONE ? base * sizes[k].courant : NONE,
+    dt = StepSize(&policy, &plan, base * sizes[k].last, sizes[k].courant < NONE ? base * sizes[k].courant : NONE,
                   sizes[k].most < NONE ? base * sizes[k].most : NONE);
     CHECK(PetscAbsReal(dt / (base * sizes[k].dt) - 1) < 1e-14 && plan.level == sizes[k].next,
           "base %g, %s: %g of the base, level %d", base, sizes[k].name, dt / base, (int)plan.level);
@@ -199,21 +216,23 @@ static PetscErrorCode CheckSizes(PetscReal base) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Steps of one level up to an end: the two last are equal, and no step is shorter than half a step. */
+/* Steps of one level up to an end: the last ten are equal, and none is shorter than 0.55 of a step or longer than 1.1.
+ */
 static PetscErrorCode CheckEnd(PetscReal end) {
   const StepPolicy policy = Policy(0.1);
   StepPlan plan = {.level = 0, .before = NONE};
-  PetscReal t = 0, last[2] = {0, 0}, least = NONE;
+  PetscReal t = 0, last[10] = {0}, least = NONE, most = 0, off = 0;
   int steps = 0;
   PetscFunctionBeginUser;
-  while (!StepFinished(&policy, t, end) && steps++ < 1000) {
-    last[0] = last[1];
-    last[1] = StepSize(&policy, &plan, NONE, end - t);
-    least = PetscMin(least, last[1]);
-    t += last[1];
+  for (; !StepFinished(&policy, t, end) && steps < 1000; steps++) {
+    const PetscReal dt = last[steps % 10] = StepSize(&policy, &plan, 0, NONE, end - t);
+    least = PetscMin(least, dt);
+    most = PetscMax(most, dt);
+    t = StepTime(&policy, t, dt, end);
   }
-  CHECK(PetscAbsReal(t - end) < 1e-12 && PetscAbsReal(last[0] - last[1]) < 1e-12 && least > 0.4999 * policy.base,
-        "%d steps to %g, the last two %g and %g", steps, end, last[0], last[1]);
+  for (int k = 0; k < PetscMin(steps, 10); k++) off = PetscMax(off, PetscAbsReal(last[k] - last[0]));
+  CHECK(t == end && off < 1e-12 && least > 0.55 * policy.base && most < 1.1001 * policy.base,
+        "%d steps to %g of %g to %g, the last ones %g", steps, end, least, most, last[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,25 +252,27 @@ static const struct {
              {"half of hardly less than two", 1, 1.999, 0.9995},
              {"what is left", 1, 0.4, 0.4},
              {"all of a short run", 0, 0.3, 0.3},
-             {"a rounding of a million steps", 1e6, 1 - 1e-5, 1}};
+             {"a rounding of a million steps", 1e6, 1 - 1e-9, 1}};
 
-/* The sum of `n` steps is the sum that it always was, and n steps are taken; n + part end in time. */
+/* n steps are taken to a multiple of the base, and each leads to the multiple's nearest decimal; n + part end in time.
+ */
 static PetscErrorCode CheckFixedRun(PetscReal base, PetscInt n, PetscReal part) {
   const StepPolicy p = {.base = base};
   const PetscReal end = (n + part) * base;
-  PetscReal t = 0, sum = 0, least = NONE;
+  PetscReal t = 0, least = NONE, off = 0;
   PetscInt steps = 0;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++) sum += base;
   for (; !StepFinished(&p, t, end) && steps < 2 * n + 2; steps++) {
-    const PetscReal dt = StepFixed(&p, t, end - t);
+    const PetscReal dt = StepFixed(&p, t, end);
     least = PetscMin(least, dt);
-    t += dt;
+    t = StepTime(&p, t, dt, end);
+    if (t < end && dt == base) off = PetscMax(off, PetscAbsReal(t - StepDecimal((steps + 1) * base)));
   }
   if (part == 0)
-    CHECK(steps == n && t == sum && least == base, "%d steps of %g: %d, t %.17g", (int)n, base, (int)steps, t);
+    CHECK(steps == n && t == end && least == base && off == 0, "%d steps of %g: %d, t %.17g", (int)n, base, (int)steps,
+          t);
   else
-    CHECK(PetscAbsReal(t - end) <= 1e-15 * end && steps == n + 1 && (!n || least >= 0.5 * base),
+    CHECK(t == end && off == 0 && steps == n + 1 && (!n || least >= 0.5 * base),
           "%g steps of %g: %d, t %.17g of %.17g, least %g", n + part, base, (int)steps, t, end, least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -261,8 +282,8 @@ static PetscErrorCode CheckFixed(void) {
   StepPolicy p = {.base = 0.1};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(fixed) / sizeof(fixed[0]); k++) {
-    const PetscReal most = fixed[k].most < NONE ? fixed[k].most * p.base : NONE;
-    const PetscReal dt = StepFixed(&p, fixed[k].t * p.base, most);
+    const PetscReal t = fixed[k].t * p.base, until = fixed[k].most < NONE ? t + fixed[k].most * p.base : NONE;
+    const PetscReal dt = StepFixed(&p, t, until);
     CHECK(PetscAbsReal(dt / (p.base * fixed[k].dt) - 1) < 1e-14, "%s: %g of a step", fixed[k].name, dt / p.base);
   }
   for (int b = 0; b < 5; b++)
@@ -275,7 +296,27 @@ static PetscErrorCode CheckFixed(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* When a time counts as the end: within rounding of it, which of a sum of many fixed steps may be more. */
+/* Times of steps: decimals, whatever the sum is in binary; the end itself; of adaptive steps the sum. */
+static PetscErrorCode CheckTimes(void) {
+  static const struct {
+    PetscReal base, t, dt, until, want;
+  } times[] = {{0.1, 0.2, 0.1, NONE, 0.3},          {0.01, 0.34, 0.01, NONE, 0.35}, {0.01, 2.99, 0.01, NONE, 3},
+               {1e-3, 1.004, 1e-3, NONE, 1.005},    {0.03, 0.5, 0.03, NONE, 0.53},  {0.02, 0.095, 0.015, 0.11, 0.11},
+               {1. / 3, 2. / 3, 1. / 3, NONE, 1},   {7e-5, 0.69993, 7e-5, 1, 0.7},  {0.1, 0.2, 0.1, 0.1 * 3, 0.1 * 3},
+               {0.1, 123456.7, 0.1, NONE, 123456.8}};
+  StepPolicy p = Policy(0.1);
+  PetscFunctionBeginUser;
+  CHECK(StepTime(&p, 0.2, 0.1, NONE) == 0.2 + 0.1 && StepTime(&p, 0.2, 0.1, 0.3) == 0.3, "adaptive steps: the sum");
+  p.adaptive = PETSC_FALSE;
+  for (size_t k = 0; k < sizeof(times) / sizeof(times[0]); k++) {
+    p.base = times[k].base;
+    const PetscReal t = StepTime(&p, times[k].t, times[k].dt, times[k].until);
+    CHECK(t == times[k].want, "%.17g after %g: %.17g", times[k].dt, times[k].t, t);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* When a time counts as the end: within rounding of it. */
 static PetscErrorCode CheckFinished(void) {
   StepPolicy p = Policy(0.1);
   PetscFunctionBeginUser;
@@ -283,7 +324,7 @@ static PetscErrorCode CheckFinished(void) {
   CHECK(!StepFinished(&p, 3 - 1e-9, 3) && !StepFinished(&p, 2.96, 3), "before the end");
   p.adaptive = PETSC_FALSE;
   CHECK(StepFinished(&p, 3 - 1e-11, 3) && !StepFinished(&p, 2.999, 3), "fixed steps");
-  CHECK(StepFinished(&p, 1e5 - 1e-6, 1e5) && !StepFinished(&p, 1e5 - 0.03, 1e5), "a million of them");
+  CHECK(StepFinished(&p, 1e5 - 1e-10, 1e5) && !StepFinished(&p, 1e5 - 1e-6, 1e5), "a million of them");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -321,6 +362,7 @@ PetscErrorCode Facts(void) {
   PetscCall(CheckPolicies());
   for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
   PetscCall(CheckFixed());
+  PetscCall(CheckTimes());
   PetscCall(CheckFinished());
   PetscCall(CheckPolicy());
   PetscFunctionReturn(PETSC_SUCCESS);
