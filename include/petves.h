@@ -45,7 +45,8 @@ PETSC_EXTERN PetscErrorCode SimulationDestroy(Simulation *simulation);
 /* SimulationView - the model in force and the solvers, as -view prints them. */
 PETSC_EXTERN PetscErrorCode SimulationView(Simulation simulation, PetscViewer viewer);
 
-/* SimulationBegin - write the initial state (row 0 of series.csv, the first saved time); later calls do nothing. */
+/* SimulationBegin - solve the first state and write it (row 0 of series.csv, the first saved time); later calls do
+   nothing. */
 PETSC_EXTERN PetscErrorCode SimulationBegin(Simulation simulation);
 
 /* SimulationStep - one time step, with its row of series.csv and the files that are due; failure is NULL or says why

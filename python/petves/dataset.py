@@ -94,7 +94,7 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
     for name in run.columns_of_each():
         variables[f"each_{name}"] = ("step", "member"), lazy_array(run.folder / "vesicles.h5", name, steps)
     variables |= {
-        "pressure_gradient": ("time", [run.pressure_gradient(frame) for frame in range(frames)]),
+        "pressure_gradient": ("time", run.pressure_gradient),
         "markers": (("time", "marker", "xy"), run.markers),
         "velocity": (("time", "marker", "xy"), run.velocity),
         "tension": (("time", "marker"), run.tension),

@@ -50,6 +50,8 @@ class Run:
         Cell size (length), viscosity (length^2/time), bending stiffness (the largest, where vesicles differ).
     time : ndarray, shape (T,)
         Saved times.
+    pressure_gradient : ndarray, shape (T,)
+        Mean gradient of the pressure along x (length/time^2), which is not in the p of `fields`.
     markers, velocity : ndarray, shape (T, M, 2)
         Markers (length) and their velocity (length/time); M = 0 without a vesicle.
     tension : ndarray, shape (T, M)
@@ -86,6 +88,7 @@ class Run:
     nu: float
     c_b: float
     time: np.ndarray
+    pressure_gradient: np.ndarray
     markers: np.ndarray
     velocity: np.ndarray
     tension: np.ndarray
@@ -214,20 +217,6 @@ class Run:
         columns = {name: self.series.get(f"energy_{name}") for name in ENERGIES}
         found = {name: values for name, values in columns.items() if values is not None and values.any()}
         return found or {"kinetic": self.series["energy_kinetic"]}
-
-    def pressure_gradient(self, frame: int) -> float:
-        """Return the mean gradient of the pressure along x (length/time^2), which is not in the p of `fields`.
-
-        From the column pressure_drop; in runs that do not have it, that of a Poiseuille flow in the background.
-        """
-        length = self.box[1] - self.box[0]
-        drop = self.at_step(frame, self.series["pressure_drop"]) if "pressure_drop" in self.series else np.nan
-        if np.isfinite(drop):
-            return -drop / length
-        options = self._in_force
-        if options.get("flow_type") != "poiseuille" or options.get("flow_form") == "total":
-            return 0.0
-        return -2 * self.nu * float(options["flow_peak_velocity"]) / float(options["flow_half_width"]) ** 2
 
     def frame_at(self, time: float) -> int:
         """Return the number of the saved time nearest to a time of the run."""

@@ -103,6 +103,7 @@ def read_frames(file: h5py.File) -> dict[str, Any]:
         "nu": _number(file, "nu"),
         "c_b": _number(file, "c_b"),
         "time": time,
+        "pressure_gradient": rows("fluid/pressure_gradient"),
         "markers": rows("vesicle/markers", start[-1], 2),
         "velocity": rows("vesicle/velocity", start[-1], 2),
         "tension": rows("vesicle/tension", start[-1]),

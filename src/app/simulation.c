@@ -218,6 +218,7 @@ PetscErrorCode SimulationBegin(Simulation s) {
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
   s->begun = PETSC_TRUE;
   s->reason = "finished";
+  PetscCall(SchemeStart(s->scheme));
   PetscCall(OutputBegin(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,9 +54,11 @@ static PetscErrorCode AppendedMake(const AppendedKind *kind, MPI_Comm comm, cons
   PetscCall(H5FileOpen(comm, path, H5_NEW, f));
   PetscCall(kind->describe(kind->scheme, f));
   H5CreateSeries(f, "/time", PETSC_FALSE, 0, NULL);
+  H5PutUnit(f, "/time", "time");
   for (PetscInt k = 0; k < kind->n; k++) {
     const AppendedSeries *s = &kind->series[k];
     H5CreateSeries(f, s->path, s->single, !s->rows ? 0 : (s->columns > 1 ? 2 : 1), &s->rows);
+    if (s->unit) H5PutUnit(f, s->path, s->unit);
   }
   H5FileFlush(f);
   PetscFunctionReturn(PETSC_SUCCESS);

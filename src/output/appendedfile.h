@@ -25,6 +25,7 @@ typedef struct {
   char path[APPENDED_NAME];
   PetscInt rows, columns; /* of an entry; 0 rows: an entry is one number */
   PetscBool single;       /* values have single precision in the file */
+  const char *unit;       /* its attribute; NULL: none */
 } AppendedSeries;
 
 /* What an appended file holds. */

@@ -57,7 +57,7 @@ static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   const DoubleLayer contrast = s->coupling->mobility->contrast;
   Vec F;
   PetscFunctionBeginUser;
-  if (q->dt_last == 0 || !near) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!q->solved || !near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(q->X, &F));
   PetscCall(CouplingForces(s->coupling, q->t, q->sigma, q->X, F));
   PetscCall(SingleCellsCorrect(&near->set, &near->lattice, F, q->X, field));

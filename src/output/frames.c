@@ -1,10 +1,11 @@
 #include "output/frames.h"
 #include "base/version.h"
 #include "output/cells.h"
+#include "scheme/pressuredrop.h"
 
 #define ABOUT                                                                                                          \
-  "u, v: velocity (background included) at cell centres; p: pressure at cell centres, of the disturbance (without "    \
-  "that of the background flow) unless -flow_form total; tension k "
+  "u, v: velocity (background included) at cell centres; p: pressure at cell centres, without its mean gradient "      \
+  "along x, which is pressure_gradient; tension k "
 
 /* The ratios of viscosities, unless all are 1. */
 static PetscErrorCode FramesPutRatios(H5File *f, Scene scene) {
@@ -68,6 +69,14 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
   H5Put(f, "h", H5_REAL, 1, &g->h);
   H5Put(f, "nu", H5_REAL, 1, &scene->fluid.nu);
   H5Put(f, "c_b", H5_REAL, 1, &scene->membrane.bending);
+  for (int d = 0; d < 2; d++) {
+    PetscReal *x;
+    PetscCall(PetscMalloc1(g->n[d], &x));
+    for (PetscInt i = 0; i < g->n[d]; i++) x[i] = g->lo[d] + (i + 0.5) * g->h;
+    H5PutRows(f, d ? "/fluid/y" : "/fluid/x", H5_REAL, g->n[d], 0, x);
+    H5PutUnit(f, d ? "/fluid/y" : "/fluid/x", "length");
+    PetscCall(PetscFree(x));
+  }
   H5Put(f, "vesicle_start", H5_INT, l->bodies + 1, l->start);
   if (l->bodies) H5Put(f, "vesicle_c_b", H5_REAL, l->bodies, scene->membrane.each);
   if (l->bodies) PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
@@ -92,22 +101,23 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
   const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0, moving = s->scene->obstacles.moving ? W : 0,
                  n = g->n[0] * g->rows[FIELD_P], tracers = f->tracers->n;
   const PetscBool single = s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
-  const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single},
-                                {"/fluid/v", g->n[1], g->n[0], single},
-                                {"/fluid/p", g->n[1], g->n[0], single},
-                                {"/vesicle/markers", M, 2},
-                                {"/vesicle/velocity", M, 2},
-                                {"/vesicle/tension", M, 1},
-                                {"/obstacle/force", W, 2},
-                                {"/obstacle/markers", moving, 2},
-                                {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2},
-                                {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2},
-                                {"/tracers/points", tracers, 2},
-                                {"/tracers/wrapped", FramesAreWrapped(s) ? tracers : 0, 2}};
+  const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single, "length/time"},
+                                {"/fluid/v", g->n[1], g->n[0], single, "length/time"},
+                                {"/fluid/p", g->n[1], g->n[0], single, "length^2/time^2"},
+                                {"/vesicle/markers", M, 2, .unit = "length"},
+                                {"/vesicle/velocity", M, 2, .unit = "length/time"},
+                                {"/vesicle/tension", M, 1, .unit = "length^3/time^2"},
+                                {"/obstacle/force", W, 2, .unit = "length^3/time^2"},
+                                {"/obstacle/markers", moving, 2, .unit = "length"},
+                                {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2, .unit = "length"},
+                                {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2, .unit = "length"},
+                                {"/tracers/points", tracers, 2, .unit = "length"},
+                                {"/tracers/wrapped", FramesAreWrapped(s) ? tracers : 0, 2, .unit = "length"}};
   AppendedKind kind = {.name = "run.h5", .entries = "frames", .scheme = s, .describe = FramesDescribe};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
     if (all[k].rows) kind.series[kind.n++] = all[k];
+  kind.series[kind.n++] = (AppendedSeries){"/fluid/pressure_gradient", 0, 1, .unit = "length/time^2"};
   f->scheme = s;
   PetscCall(PetscMalloc4(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2],
                          PetscMax(2 * PetscMax(tracers, PetscMax(M, W)), g->rank ? 0 : g->n[0] * g->n[1]), &f->all));
@@ -147,6 +157,7 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscBool wrapped = FramesAreWrapped(s), moving = s->scene->obstacles.moving;
   AppendedFile *file = &f->file;
+  PetscReal gradient;
   PetscInt k = 0;
   PetscFunctionBeginUser;
   file->count = f->scheduled;
@@ -184,8 +195,10 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
   if (f->tracers->n && wrapped) {
     PetscCall(PetscArraycpy(f->all, f->tracers->X, 2 * f->tracers->n));
     for (PetscInt i = 0; i < f->tracers->n; i++) ShiftIntoBox(s->fluid->grid, 1, f->all + 2 * i, 1, f->all + 2 * i);
-    AppendedSet(file, k, f->all);
+    AppendedSet(file, k++, f->all);
   }
+  PetscCall(PressureGradient(s, &gradient));
+  AppendedSet(file, k, &gradient);
   PetscCall(AppendedFlush(file, PETSC_FALSE)); /* values before the time by which readers count them */
   PetscCall(AppendedAdd(file, s->state.t));
   PetscCall(AppendedFlush(file, PETSC_FALSE));

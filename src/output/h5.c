@@ -120,12 +120,14 @@ void H5PutRows(H5File *f, const char name[], hid_t type, PetscInt rows, PetscInt
   (void)H5Pclose(link);
 }
 
-static void AttributePut(H5File *f, const char name[], hid_t type, PetscInt n, const void *values) {
+/* object: "." is the root. */
+static void AttributePut(H5File *f, const char object[], const char name[], hid_t type, PetscInt n,
+                         const void *values) {
   const hsize_t size = (hsize_t)n;
   hid_t space = -1, attribute = -1;
   if (f->rank || f->failed) return;
   H5Try(f, space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
-  H5Try(f, attribute = H5Acreate2(f->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  H5Try(f, attribute = H5Acreate_by_name(f->id, object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   H5Try(f, H5Awrite(attribute, type, values));
   if (attribute >= 0) H5Try(f, H5Aclose(attribute));
   if (space >= 0) H5Try(f, H5Sclose(space));
@@ -135,7 +137,7 @@ void H5Put(H5File *f, const char name[], hid_t type, PetscInt n, const void *val
   if (n > ATTRIBUTE_NUMBERS)
     H5PutRows(f, name, type, n, 0, values);
   else
-    AttributePut(f, name, type, n, values);
+    AttributePut(f, ".", name, type, n, values);
 }
 
 /* Rank 0 reads the n values of an attribute or, of many, of a dataset. */
@@ -179,16 +181,25 @@ static void TextPieceName(const char name[], int k, char piece[64]) {
   (void)(k ? PetscSNPrintf(piece, 64, "%s_%d", name, k) : PetscStrncpy(piece, name, 64));
 }
 
+/* A text that HDF5 holds in one attribute. */
+static void WordPut(H5File *f, const char object[], const char name[], const char value[]) {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Try(f, H5Tset_size(type, strlen(value) + 1));
+  AttributePut(f, object, name, type, 1, value);
+  (void)H5Tclose(type);
+}
+
+void H5PutUnit(H5File *f, const char dataset[], const char unit[]) {
+  if (!f->rank) WordPut(f, dataset, "units", unit);
+}
+
 void H5PutText(H5File *f, const char name[], const char value[]) {
   const size_t length = strlen(value);
   char part[TEXT_PIECE + 1], piece[64];
   for (int k = 0; !f->rank && (!k || (size_t)k * TEXT_PIECE < length); k++) {
-    const hid_t type = H5Tcopy(H5T_C_S1);
     TextPieceName(name, k, piece);
     (void)PetscStrncpy(part, value + (size_t)k * TEXT_PIECE, sizeof(part));
-    H5Try(f, H5Tset_size(type, strlen(part) + 1));
-    AttributePut(f, piece, type, 1, part);
-    (void)H5Tclose(type);
+    WordPut(f, ".", piece, part);
   }
 }
 

@@ -63,6 +63,9 @@ PETSC_EXTERN PetscErrorCode H5GetText(H5File *file, const char name[], char **va
 PETSC_EXTERN void H5PutRows(H5File *file, const char name[], hid_t type, PetscInt rows, PetscInt columns,
                             const void *values);
 
+/* H5PutUnit - the attribute `units` of a dataset. Not collective. */
+PETSC_EXTERN void H5PutUnit(H5File *file, const char dataset[], const char unit[]);
+
 /* H5CheckLinks - whether the file itself holds all that its names stand for: a link to another file or name makes
    `plain` false. A file with a right checksum need not be one that petves wrote. Collective. */
 PETSC_EXTERN PetscErrorCode H5CheckLinks(H5File *file, PetscBool *plain);

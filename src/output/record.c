@@ -90,7 +90,7 @@ static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
   ObstacleLoad *inner;
   PetscReal *place;
   PetscFunctionBeginUser;
-  if (!s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(vesicles + curves, &inner, 2 * (vesicles + curves), &place));
   PetscCall(VesicleLoads(s, inner, place));
   for (PetscInt b = 0; b < curves; b++) {

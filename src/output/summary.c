@@ -156,9 +156,7 @@ static void JsonPrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
   fprintf(f, "  \"inertia\": \"%s\",\n", names[scene->fluid.inertia]);
   fprintf(f, scene->reynolds >= 0 ? "  \"reynolds\": %.6g,\n" : "  \"reynolds\": null,\n", (double)scene->reynolds);
-  fprintf(f, "  \"cfl_max\": %.6g,\n  \"warning\": ", (double)cfl_max);
-  JsonPrintString(f, scene->warning);
-  fprintf(f, ",\n");
+  fprintf(f, "  \"cfl_max\": %.6g,\n", (double)cfl_max);
 }
 
 /* Print the least and the largest ratio of viscosities, unless all are 1. */
@@ -172,11 +170,12 @@ static void JsonPrintRatios(FILE *f, Scene scene) {
   fprintf(f, "  \"viscosity_ratio\": [%.6g, %.6g],\n", (double)low, (double)high);
 }
 
-/* Print the warnings of the run, in order. */
-static void JsonPrintWarnings(FILE *f, const Warnings *w) {
+/* Print the warnings of the run, in order, that of the scene first. */
+static void JsonPrintWarnings(FILE *f, const char scene[], const Warnings *w) {
   fprintf(f, "  \"warnings\": [");
+  if (*scene) JsonPrintString(f, scene);
   for (PetscInt k = 0; k < w->n; k++) {
-    if (k) fprintf(f, ", ");
+    if (k || *scene) fprintf(f, ", ");
     JsonPrintString(f, w->text[k]);
   }
   fprintf(f, "],\n");
@@ -229,7 +228,7 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
           s->bytes_h5);
   JsonPrintRatios(f, s->scheme->scene);
   JsonPrintInertia(f, s->scheme->scene, r->cfl_max);
-  JsonPrintWarnings(f, &s->scheme->warnings);
+  JsonPrintWarnings(f, s->scheme->scene->warning, &s->scheme->warnings);
   JsonPrintOrigin(f);
   JsonPrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());

@@ -65,7 +65,7 @@ PetscErrorCode CoupledAdvance(Scheme s, PetscReal dt) {
   StateSwap(&s->state, &d->next);
   s->old[0].dt_last = s->state.dt_last;
   s->state.dt_last = dt;
-  s->state.fields = d->next.w ? (d->next.p ? FIELDS_MADE : FIELDS_WITHOUT_P) : FIELDS_WITHOUT_BOTH;
+  s->state.fields = CoupledMakes(d);
   s->past = PetscMin(s->past + 1, SCHEME_PAST);
   s->plan.order = d->next_plan.order;
   s->plan.guess = d->next_plan.guess;

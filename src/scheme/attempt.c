@@ -228,9 +228,10 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->scene->scheme.length_target) PetscCall(LawTarget(s->coupling->law, b.a0, d->Xhat, s->g));
+  const PetscReal aim = d->start ? 0 : b.a0; /* at edges and areas: the first ones have them */
+  if (s->scene->scheme.length_target) PetscCall(LawTarget(s->coupling->law, aim, d->Xhat, s->g));
   if (LawAimsAreas(s->coupling->law))
-    PetscCall(LawTargetAreas(s->coupling->law, b.a0, d->Xstar, d->Xhat, s->background));
+    PetscCall(LawTargetAreas(s->coupling->law, aim, d->Xstar, d->Xhat, s->background));
   PetscCall(TurnEdges(s, d));
   PetscCall(RightHandSides(s, d, &b));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
@@ -267,5 +268,30 @@ PetscErrorCode CoupledFixedAttempt(Scheme s, PetscReal dt) {
   if (!overshot) PetscFunctionReturn(PETSC_SUCCESS);
   s->plan.order = 1; /* of this step: CoupledAdvance says the next one's */
   PetscCall(CoupledAttempt(s, dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define MOMENT 1e-12 /* of the first step */
+
+PetscErrorCode CoupledStart(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  State *now = &s->state, *next = &d->next;
+  const PetscReal dt = now->dt;
+  const PetscBool steady = s->fluid->steady;
+  PetscFunctionBeginUser;
+  if (now->solved || now->dt_last > 0 || !CouplingHasBodies(s->coupling) || (!steady && !now->solid))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  FluidSetSteady(s->fluid, PETSC_TRUE);
+  d->start = PETSC_TRUE;
+  PetscCall(CoupledAttempt(s, MOMENT * dt));
+  d->start = PETSC_FALSE;
+  FluidSetSteady(s->fluid, steady);
+  if (!*s->report.failure) {
+    PetscCall(VecCopy(now->X, next->X));
+    PetscCall(StateCopy(next, now, PETSC_TRUE));
+    now->fields = CoupledMakes(d);
+    now->solved = PETSC_TRUE;
+  }
+  now->dt = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -151,32 +151,11 @@ static PetscErrorCode CheckCourant(Scheme s, PetscReal dt, PetscReal speed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MOMENT 1e-6 /* of the first step */
-
-/* With inertia and obstacles the fluid starts from the quasi-steady flow past them, not from a jump at their surfaces:
-   one step without inertia, so short that nothing moves, of which the flow is kept. */
-static PetscErrorCode StartFlow(Scheme s, Coupled *d) {
-  State *now = &s->state, *next = &d->next;
-  const PetscReal dt = now->dt;
-  PetscFunctionBeginUser;
-  if (!now->solid || s->fluid->steady || now->dt_last > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  FluidSetSteady(s->fluid, PETSC_TRUE);
-  PetscCall(CoupledAttempt(s, MOMENT * dt));
-  FluidSetSteady(s->fluid, PETSC_FALSE);
-  now->dt = dt;
-  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-  if (next->w) PetscCall(VecCopy(next->w, now->w));
-  if (next->flow) PetscCall(VecCopy(next->flow, now->flow));
-  PetscCall(VecCopy(next->sigma, now->sigma));
-  PetscCall(VecCopy(next->solid, now->solid));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Step_Coupled(Scheme s, PetscReal most) {
   Coupled *d = (Coupled *)s->data;
   PetscReal speed = 0; /* max(|u| + |v|), which bounds steps with convection */
   PetscFunctionBeginUser;
-  PetscCall(StartFlow(s, d));
+  PetscCall(CoupledStart(s));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   if (d->convection) PetscCall(ConvectionSpeed(d->convection, s->state.w, &speed));
   if (s->policy.adaptive)
@@ -272,7 +251,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->ops = (SchemeOps){.step = Step_Coupled, .undo = Undo_Coupled, .destroy = Destroy_Coupled};
+  s->ops = (SchemeOps){.start = CoupledStart, .step = Step_Coupled, .undo = Undo_Coupled, .destroy = Destroy_Coupled};
   PetscCall(SetUp_Coupled(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,6 +12,7 @@ typedef struct {
   History history;       /* what it is made from */
   PetscInt order;        /* order of the step being made */
   StepPlan next_plan;    /* order and guess that the step being made plans for the next one */
+  PetscBool start;       /* the first state is being solved */
   PetscBool graded;      /* the step being made is a graded start */
   PetscReal done;        /* the part of a graded start that is done (time) */
   PetscBool warned;      /* a warning of edges that were off has been given */
@@ -30,6 +31,11 @@ static inline StreamFlows CoupledFlows(const Coupled *d) {
   return d->solver->coupling->mobility->stream->flows;
 }
 
+/* Which fields a step makes. */
+static inline StateFields CoupledMakes(const Coupled *d) {
+  return d->next.w ? (d->next.p ? FIELDS_MADE : FIELDS_WITHOUT_P) : FIELDS_WITHOUT_BOTH;
+}
+
 /* CoupledAttempt - solve one step of size dt from the state into next, or say in report.failure why it cannot be.
    CoupledFixedAttempt - of a fixed step: a step whose motion stops within it is made again by backward Euler, from the
    state itself in place of an extrapolation. CoupledEstimate - error estimate of the step in next: max |X - X*|/R0, R0
@@ -37,6 +43,11 @@ static inline StreamFlows CoupledFlows(const Coupled *d) {
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode CoupledEstimate(Scheme scheme, PetscReal *error);
+
+/* CoupledStart - solve the first state, with its markers where they are: one step without inertia, so short that
+   nothing moves. Without inertia that is the flow; with inertia the fluid starts from this flow past obstacles, not
+   from a jump at their surfaces, and from rest where there are none, which is left alone. Collective. */
+PETSC_EXTERN PetscErrorCode CoupledStart(Scheme scheme);
 
 /* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
    edges. Collective. */

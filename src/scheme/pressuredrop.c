@@ -24,10 +24,12 @@ typedef struct {
 static PetscErrorCode AddObstacles(Scheme s, ForceSums *sum) {
   const Coupling c = s->coupling;
   const Grid g = s->fluid->grid;
-  const Layout l = c->bodies->obstacles->layout;
-  const PetscInt first = c->bodies->layout->M - l->M + l->first;
+  const Obstacles o = c->bodies->obstacles;
   const PetscScalar *F;
   PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  const Layout l = o->layout;
+  const PetscInt first = c->bodies->layout->M - l->M + l->first;
   PetscCall(VecGetArrayRead(s->state.solid, &F));
   for (PetscInt k = 0; k < l->n; k++) {
     const Stencil *e = &c->markers->stencil[2 * (first + k)];
@@ -89,7 +91,7 @@ static PetscReal BackgroundFlux(Scheme s) {
 static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
   const PetscScalar *U;
   PetscFunctionBeginUser;
-  if (!s->coupling->mobility->contrast || !s->state.step) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->coupling->mobility->contrast || !s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(s->state.U, &U));
   PetscCall(DoubleLayerMean(s->coupling->mobility->contrast, U, mean));
   PetscCall(VecRestoreArrayRead(s->state.U, &U));
@@ -136,5 +138,17 @@ PetscErrorCode DriveMeasure(Scheme s, Drive *drive) {
   drive->flux = (sum[3] / faces - mean[0]) * (g->hi[1] - g->lo[1]) + BackgroundFlux(s);
   GiveBack(s, sum[1], &gradient, &drive->flux);
   drive->pressure_drop = (g->hi[0] - g->lo[0]) * (gradient - background[0]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PressureGradient(Scheme s, PetscReal *gradient) {
+  const Grid g = s->fluid->grid;
+  PetscReal background[2];
+  Drive drive = {NAN, NAN};
+  PetscFunctionBeginUser;
+  if (s->coupling->bodies->obstacles || s->fluid->zero_flux) PetscCall(DriveMeasure(s, &drive));
+  FlowPressureGradient(&s->scene->flow, s->fluid->nu, background);
+  *gradient = s->fluid->total ? 0 : background[0];
+  if (!PetscIsNanReal(drive.pressure_drop)) *gradient = -drive.pressure_drop / (g->hi[0] - g->lo[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,3 +13,7 @@ typedef struct {
    the box gives the mean pressure gradient g: H u + g = f, of forces f of obstacles, gravity and contact with solids.
    Collective. */
 PETSC_EXTERN PetscErrorCode DriveMeasure(Scheme scheme, Drive *drive);
+
+/* PressureGradient - the mean gradient along x that the pressure of the present state lacks (length/time^2): what
+   drives the flow, or that of the background. Collective. */
+PETSC_EXTERN PetscErrorCode PressureGradient(Scheme scheme, PetscReal *gradient);

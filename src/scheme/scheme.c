@@ -94,6 +94,20 @@ PetscErrorCode SchemeDestroy(Scheme *scheme) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SchemeStart(Scheme s) {
+  const PetscInt solves = FluidCountSolves(s->fluid);
+  PetscFunctionBeginUser;
+  if (!s->ops.start) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PhaseBegin(PHASE_STEP));
+  PetscCall(s->ops.start(s));
+  PetscCall(PhaseEnd());
+  if (s->state.solved)
+    s->report.solves = FluidCountSolves(s->fluid) - solves;
+  else
+    PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemeStep(Scheme s, PetscReal until) {
   const PetscReal t = s->state.t;
   const PetscInt solves = FluidCountSolves(s->fluid);
@@ -111,6 +125,7 @@ PetscErrorCode SchemeStep(Scheme s, PetscReal until) {
     s->state.t = StepTime(&s->policy, t, s->state.dt, until);
     s->state.dt_last = s->state.dt_last > 0 ? s->state.dt_last : s->state.dt;
     s->state.step++;
+    s->state.solved = PETSC_TRUE;
     PetscCall(SchemeCheck(s));
   }
   if (*s->report.failure) {

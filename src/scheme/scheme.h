@@ -11,6 +11,11 @@ PETSC_EXTERN PetscErrorCode SchemeRegister(const char type[], PetscErrorCode (*c
 PETSC_EXTERN PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[], Scheme *scheme);
 PETSC_EXTERN PetscErrorCode SchemeDestroy(Scheme *scheme);
 
+/* SchemeStart - solve the first state: flow, pressure, tension and forces of the first markers, which stay. Nothing
+   happens after a step, where the fluid starts from rest, and where the solve fails, as the first step will say why.
+   Collective. */
+PETSC_EXTERN PetscErrorCode SchemeStart(Scheme scheme);
+
 /* SchemeStep - one time step: the policy's, to the time `until` at most (PETSC_MAX_REAL: no end). Afterwards
    scheme->report says what was done; when report.failure is not empty the step could not be taken, or led to a state
    that is refused, and the state is the last good one. Collective. */

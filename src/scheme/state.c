@@ -64,6 +64,7 @@ PetscErrorCode StateCopy(const State *q, State *copy, PetscBool fields) {
   copy->t = q->t;
   copy->dt = q->dt;
   copy->dt_last = q->dt_last;
+  copy->solved = q->solved;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

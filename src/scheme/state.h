@@ -10,6 +10,7 @@ typedef struct {
   PetscInt step;
   PetscReal t, dt;
   PetscReal dt_last; /* the step that led to this state; 0 at the start */
+  PetscBool solved;  /* flow, tension and velocities are those of a solve; not of fluid that starts from rest */
   Vec w;             /* velocity on the faces: the disturbance, or the whole in the total form */
   Vec p;             /* pressure, zero mean */
   Vec flow;        /* velocity as a flow (fluid/stokes/streamflow.h), in fluid with inertia; NULL where steps make w */

@@ -24,6 +24,7 @@ void SchemeSetTimes(Scheme s, const SchemeTimes *times) {
   s->state.t = times->t;
   s->state.dt = times->dt;
   s->state.dt_last = times->dt_last;
+  s->state.solved = times->step > 0 ? PETSC_TRUE : PETSC_FALSE;
   s->past = s->old[0].X ? times->past : 0;
   for (PetscInt j = 0; j < s->past; j++) s->old[j].dt_last = times->dt_earlier[j];
   s->plan.order = times->plan.order;

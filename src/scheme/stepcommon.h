@@ -63,6 +63,8 @@ typedef struct {
 
 /* What a scheme does. All operations are collective; an operation may be NULL where its comment says so. */
 typedef struct {
+  /* solve the first state, or fill in report.failure and leave it; NULL: fluid and membranes start from rest */
+  PetscErrorCode (*start)(Scheme);
   /* advance the state by state.dt, which step-size control chooses up to `most`; or fill in report.failure and leave it
    */
   PetscErrorCode (*step)(Scheme, PetscReal most);

@@ -66,6 +66,11 @@ def test_run_h5_has_its_shapes_and_attributes(run):
     with h5py.File(run.folder / "run.h5") as file:
         shapes = {name: file[name].shape for name in ("time", "fluid/u", "fluid/v", "fluid/p")}
         assert shapes == {"time": (FRAMES,)} | {f"fluid/{c}": (FRAMES, 40, 40) for c in "uvp"}
+        np.testing.assert_allclose(file["fluid/x"], 0.05 * (np.arange(40) + 0.5), rtol=1e-15)
+        np.testing.assert_allclose(file["fluid/y"], 0.05 * (np.arange(40) + 0.5) - 1, rtol=1e-14, atol=1e-16)
+        assert (file["fluid/pressure_gradient"][:] == np.zeros(FRAMES)).all()
+        units = {name: file[name].attrs["units"].decode() for name in ("time", "fluid/y", "fluid/p", "vesicle/tension")}
+        assert list(units.values()) == ["time", "length", "length^2/time^2", "length^3/time^2"]
         assert file["vesicle/markers"].shape == file["vesicle/velocity"].shape == (FRAMES, markers, 2)
         assert file["vesicle/tension"].shape == (FRAMES, markers)
         found = attributes(file)

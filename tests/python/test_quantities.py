@@ -61,9 +61,23 @@ def test_pressure_falls_through_a_throat(cached_run):
     run = petves.load(cached_run(f"{CHANNEL} -vesicle_shape none {throat}").folder, "numpy")
     data = petves.load(run.folder, "xarray")
     drop = run.series["pressure_drop"][-1]
-    assert run.pressure_gradient(-1) == -drop / 2 and float(data["pressure_gradient"][-1]) == -drop / 2
+    assert run.pressure_gradient[-1] == -drop / 2 and float(data["pressure_gradient"][-1]) == -drop / 2
     ends = probe(data.isel(time=-1), [(0.0, 0.5), (2.0, 0.5)])["p"].values
     assert ends[0] - ends[1] == pytest.approx(drop, rel=1e-12) and drop > 2 * 48
+
+
+@pytest.mark.parametrize("drive", ["pressure", "flux"])
+def test_walls_hold_what_the_pressure_gradient_drives(cached_run, drive):
+    """Past a vesicle, at every saved time: the shear stresses of both walls add up to -dp/dx H; more is needed for the flux of the
+    channel without it."""
+    vesicle = (
+        "-vesicle_area 0.15 -vesicle_reduced_area 0.7 -vesicle_center 1,0.3 -vesicle_bending 0.1 -output_every 0.01"
+    )
+    data = petves.load(cached_run(f"{CHANNEL} {vesicle} -flow_drive {drive}").folder, "xarray")
+    walls = wall_shear_stress(data).mean("x")
+    np.testing.assert_allclose(walls["bottom"] + walls["top"], -data["pressure_gradient"], rtol=2e-4)
+    more = -data["pressure_gradient"] / 48 - 1
+    assert (more > 0.004).all() if drive == "flux" else (abs(more) < 1e-12).all()
 
 
 def test_fields_are_read_when_they_are_used(tmp_path):

@@ -99,6 +99,7 @@ def break_tables(folder: Path) -> int:
     with h5py.File(folder / "checkpoint.h5") as file:
         last, saved = int(file.attrs["step"]), int(file.attrs["frames"])
         bytes_of = [8 * file[name].size for name in ("fluid/p",) * 3 + ("vesicle/markers",) * 2 + ("vesicle/tension",)]
+        bytes_of.append(8)  # of the pressure gradient
     kept = [
         (int(x), n)
         for row in (folder / "run.h5.index").read_text().splitlines()

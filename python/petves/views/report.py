@@ -109,7 +109,7 @@ def _data(run: Run) -> dict[str, Any]:
         "shift": 0.0 if run.options().get("membrane_derivative") == "spectral" else 0.5,
         "markers": np.round(run.markers[frames], digits).tolist(),
         "tension": [[float(f"{x:.4g}") for x in row] for row in tension],
-        "tension_limits": [float(tension[1:].min()), float(tension[1:].max())] if tension[1:].size else [0.0, 1.0],
+        "tension_limits": [float(tension.min()), float(tension.max())] if tension.size else [0.0, 1.0],
         "fields": {
             "speed": _field(speed, False, "viridis", "speed (length/time)"),
             "pressure": _field(pressure, True, "RdBu_r", "pressure (length²/time²)"),

@@ -62,7 +62,7 @@ class Window:
 
     def mean_pressure(self) -> np.ndarray:
         """Return what the mean gradient adds to the pressure, shape (nx,)."""
-        return self.run.pressure_gradient(self.frame) * (self.cell_centers()[0] - np.mean(self.limits[:2]))
+        return self.run.pressure_gradient[self.frame] * (self.cell_centers()[0] - np.mean(self.limits[:2]))
 
     def vorticity(self) -> np.ndarray:
         """Return the vorticity on the cells of `extent`, shape (ny, nx)."""

@@ -1,0 +1,52 @@
+"""Frame 0 and row 0 are a solution: of the flow past the first membranes and solids, before anything has moved."""
+
+import h5py
+import numpy as np
+import pytest
+from harness import run_petves
+
+VESICLE = "-vesicle_semi_axes 0.25,0.5 -vesicle_angle 30 -vesicle_center 0.1,-0.2 -vesicle_bending 0.1"
+SHEAR = f"-domain_box -2,2,-2,2 -domain_cells 32,32 -flow_type shear {VESICLE} -fluid_inertia none"
+POST = "-obstacle_shape posts -obstacle_radius 0.45 -obstacle_center 1.2,0.6"
+KINDS = {
+    "free": f"{SHEAR} -domain_bc_x free -domain_bc_y free",
+    "box": SHEAR,
+    "channel": f"{SHEAR} -domain_bc_x periodic",
+    "contrast": f"{SHEAR} -domain_bc_x periodic -vesicle_viscosity_ratio 5",
+    "heavy": f"{SHEAR} -fluid_gravity 0,-1 -vesicle_density_difference 1",
+    "posts": f"{SHEAR} {POST} -domain_bc_x periodic",
+    "turning": f"{SHEAR} {POST} -obstacle_moving -obstacle_rotation 1",
+    "posts with inertia": f"{SHEAR} {POST} -domain_bc_x periodic -fluid_inertia unsteady",
+}
+OTHER = {
+    "step",
+    "time",
+    "dt",
+    "wall",
+    "nsolve",
+    "coupled_its",
+    "div_max",
+    "surface_div_max",
+    "area_shift",
+    "obstacle_angle_1",
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_first_state_is_what_a_short_step_leads_to(kind, tmp_path):
+    """Fields, tension, forces and every column, on 2 ranks."""
+    short = "-time_step 1e-8 -time_end 1e-8 -output_every 1e-8 -scheme_startup euler -coupled_ksp_rtol 1e-10"
+    run = run_petves(tmp_path / "run", f"{KINDS[kind]} {short}", ranks=2)
+    apart = {
+        name: abs(np.diff(values)[0]) / max(1, abs(values[1]))
+        for name, values in run.series.items()
+        if name not in OTHER
+    }
+    with h5py.File(run.folder / "run.h5") as file:
+        for name in ("fluid/u", "fluid/v", "fluid/p", "vesicle/tension", "vesicle/velocity", "obstacle/force"):
+            if name in file:
+                first, second = file[name][:]
+                apart[name] = np.abs(second - first).max() / np.abs(second).max()
+    print({name: f"{value:.1e}" for name, value in apart.items()})
+    assert np.nanmax(list(apart.values())) < 5e-5 and not np.isnan([apart["fluid/p"], apart["vesicle/tension"]]).any()
+    assert run.series["coupled_its"][0] > 0
