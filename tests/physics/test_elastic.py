@@ -102,11 +102,11 @@ def test_stiff_membranes_are_inextensible(tmp_path, law):
 
 @pytest.mark.parametrize(("modulus", "step"), [(1, 0.01), (1, 0.3), (100, 0.01), (100, 10), (1e4, 0.3), (1e4, 1000)])
 def test_relaxing_never_gains_energy(tmp_path, modulus, step):
-    """Bending and stretching together, of a fluid at rest, by steps up to 1e7 of the membrane's own time."""
+    """Bending and stretching together, of a fluid at rest, to the tolerance of the solver, by steps up to 1e7 of the time of stretching."""
     options = f"{ELLIPSE} {stretched('hooke', float(modulus))} -time_step {step} -time_end {40 * step}"
     series = run_petves(tmp_path, options).series
     energy = series["energy_bending"] + series["energy_stretching"]
-    assert np.all(np.diff(energy) < 1e-9 * energy[0]) and energy[-1] < 0.9 * energy[0]
+    assert np.all(np.diff(energy) < 1e-8 * energy[0]) and energy[-1] < 0.9 * energy[0]
 
 
 def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
