@@ -92,11 +92,8 @@ class Window:
 
     def tracers(self) -> np.ndarray:
         """Return where the tracers are seen, shape (n, 2)."""
-        points = self.run.tracers[self.frame] - self.origin
-        for d, period in enumerate(self.run.periods):
-            if period:
-                points[:, d] = self.limits[2 * d] + (points[:, d] - self.limits[2 * d]) % period
-        return points
+        points, low, periods = self.run.tracers[self.frame] - self.origin, self.limits[::2], np.array(self.run.periods)
+        return np.where(periods > 0, low + (points - low) % np.where(periods > 0, periods, 1), points)
 
     def images(self, vesicle: int, frame: int | None = None, curve: bool = True) -> list[np.ndarray]:
         """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
