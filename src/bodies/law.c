@@ -16,14 +16,15 @@ PetscErrorCode LawCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end
   PetscCall(PetscNew(law));
   **law = (struct _p_MembraneLaw){m, h * h, vesicle, end, start[vesicle], start[end] - start[vesicle]};
   PetscCall(PetscMalloc1(2 * (*law)->n, &(*law)->tau));
-  if (m->law != LAW_INEXTENSIBLE) PetscCall(PetscCalloc2((*law)->n, &(*law)->c, (*law)->n, &(*law)->excess));
+  if (m->law != LAW_INEXTENSIBLE)
+    PetscCall(PetscCalloc3((*law)->n, &(*law)->c, (*law)->n, &(*law)->viscous, (*law)->n, &(*law)->excess));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LawDestroy(MembraneLaw *law) {
   PetscFunctionBeginUser;
   if (*law) PetscCall(PetscFree((*law)->tau));
-  if (*law) PetscCall(PetscFree2((*law)->c, (*law)->excess));
+  if (*law) PetscCall(PetscFree3((*law)->c, (*law)->viscous, (*law)->excess));
   if (*law) PetscCall(PetscFree3((*law)->ratio, (*law)->z, (*law)->speed));
   PetscCall(PetscFree(*law));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -50,7 +51,9 @@ void LawPlace(MembraneLaw law, PetscReal a0, const PetscScalar X[]) {
     for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) {
       const PetscReal q = PetscSqr(law->tau[2 * k]) + PetscSqr(law->tau[2 * k + 1]);
       const Stretch s = StretchOf(m->law, q);
-      law->c[k] = MembraneStretches(m, v) ? 0.5 * a0 * m->ds[v] / (m->modulus[v] * s.slope) : 0;
+      const PetscReal slope = m->modulus[v] * s.slope, viscous = m->viscosity * a0;
+      law->viscous[k] = MembraneStretches(m, v) ? viscous / (2 * slope * q + viscous) : 0;
+      law->c[k] = MembraneStretches(m, v) ? (1 - law->viscous[k]) * 0.5 * a0 * m->ds[v] / slope : 0;
       law->excess[k] = MembraneStretches(m, v) ? 0.5 * s.sigma / s.slope - 0.5 * (q - 1) : 0;
     }
 }
@@ -79,7 +82,22 @@ void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], 
   }
 }
 
-PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g) {
+/* d -= w Dm T/h^2 of membranes that stretch. */
+static PetscErrorCode LawTargetViscous(MembraneLaw law, Vec T, PetscScalar d[]) {
+  const PetscScalar *t;
+  PetscScalar *rate;
+  PetscFunctionBeginUser;
+  if (!law->c || !T) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(law->n, &rate));
+  PetscCall(VecGetArrayRead(T, &t));
+  LawRows(law, t, NULL, rate);
+  PetscCall(VecRestoreArrayRead(T, &t));
+  for (PetscInt k = 0; k < law->n; k++) d[k] -= law->viscous[k] * rate[k];
+  PetscCall(PetscFree(rate));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) {
   const Membrane m = law->membrane;
   const PetscScalar *X;
   PetscScalar *hat = m->work.stretching, *d;
@@ -97,10 +115,11 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g) {
         star2 += e * e;
         gap += e * (hat[2 * k + c] - e);
       }
-      d[at + k] += a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
-      if (law->c) d[at + k] -= a0 * ds * law->excess[at + k] / law->h2;
+      const PetscReal aim = a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
+      d[at + k] += law->c ? (1 - law->viscous[at + k]) * (aim - a0 * ds * law->excess[at + k] / law->h2) : aim;
     }
   }
+  PetscCall(LawTargetViscous(law, T, d));
   PetscCall(VecRestoreArray(g, &d));
   PetscCall(VecRestoreArrayRead(Xhat, &X));
   PetscFunctionReturn(PETSC_SUCCESS);

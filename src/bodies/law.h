@@ -7,9 +7,11 @@
        (Dm V - c sigma)/h^2 = g       the rows, h the size of the grid's cells, V the markers' solved velocity.
 
    An inextensible membrane has c = 0 and a stretch of 1. One that stretches has sigma = sigma(q) of the new edges
-   (stretch.h), linearised at q = |tau|^2, where it is sigma_q with the derivative slope:
+   (stretch.h), linearised at q = |tau|^2, where it is sigma_q with the derivative slope, and the part of its viscosity
+   mu, which resists the rate of the stretch (Kelvin and Voigt), the markers moving with U:
 
-       sigma = sigma_q + slope (2/ds) tau.(e - e*),      c = a0 ds/(2 slope).
+       sigma = sigma_q + slope (2/ds) tau.(e - e*) + mu (Dm U)/(q ds),
+       c = (1 - w) a0 ds/(2 slope),      w = mu a0/(2 slope q + mu a0).
 
    Where steps aim at the vesicles' first areas (docs/membrane.md, The area target), the part of a vesicle's equation of
    motion r = 0 along the gradient z of its area, |z| = 1 over all its markers, gives way to z.V = s,
@@ -28,13 +30,14 @@ struct _p_MembraneLaw {
   Membrane membrane; /* borrowed */
   PetscReal h2;      /* h^2 */
   PetscInt vesicle, end;
-  PetscInt first, n; /* its markers: first .. first + n - 1 */
-  PetscReal *tau;    /* [2n] tangents where it is placed */
-  PetscReal *c;      /* [n] c; NULL where no membrane stretches */
-  PetscReal *excess; /* [n] sigma_q/(2 slope) - (q - 1)/2, of the law green 0; NULL likewise */
-  PetscReal *ratio;  /* [vesicles of the law] ratios of viscosities; NULL without an area target */
-  PetscReal *z;      /* [2n] unit gradients of the areas; NULL likewise */
-  PetscReal *speed;  /* [vesicles of the law] s (length/time); NULL likewise */
+  PetscInt first, n;  /* its markers: first .. first + n - 1 */
+  PetscReal *tau;     /* [2n] tangents where it is placed */
+  PetscReal *c;       /* [n] c; NULL where no membrane stretches */
+  PetscReal *viscous; /* [n] w; NULL likewise */
+  PetscReal *excess;  /* [n] sigma_q/(2 slope) - (q - 1)/2, of the law green 0; NULL likewise */
+  PetscReal *ratio;   /* [vesicles of the law] ratios of viscosities; NULL without an area target */
+  PetscReal *z;       /* [2n] unit gradients of the areas; NULL likewise */
+  PetscReal *speed;   /* [vesicles of the law] s (length/time); NULL likewise */
 };
 
 /* LawCreate - the law of these vesicles, not placed yet, without an area target. Not collective, as are all functions
@@ -63,12 +66,14 @@ PETSC_EXTERN void LawRows(MembraneLaw law, const PetscScalar V[], const PetscSca
 /* LawTarget - g += what gives the edges of the new markers Xhat + U/a0 their sigma, or with c = 0 the length ds, where
    sigma_q/(2 slope) stands for (q - 1)/2. With ehat = D Xhat:
 
-       a0 [-ds^2 sigma_q/(2 slope) - e*.(ehat - e*)]/(ds h^2).
+       (1 - w) a0 [-ds^2 sigma_q/(2 slope) - e*.(ehat - e*)]/(ds h^2) - w Dm T/h^2,
+
+   T the velocity of the labels, which markers that pass along the membrane have besides V; NULL: 0.
 
    LawTargetAreas - z, and s by which the new markers have the first areas A0:
 
        grad A.(Xhat + (background + V)/a0 - X*) = A0 - A(X*). */
-PETSC_EXTERN PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec g);
+PETSC_EXTERN PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g);
 PETSC_EXTERN PetscErrorCode LawTargetAreas(MembraneLaw law, PetscReal a0, Vec Xstar, Vec Xhat, Vec background);
 
 /* LawReplaceAreas - in y[2n], the residual of the equation of motion at V, its part along z; aimed false: with s = 0,

@@ -35,6 +35,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, bending[v]);
   m->derivative = (DerivativeType)given->derivative;
   m->law = (LawType)given->law;
+  m->viscosity = given->viscosity;
   PetscCall(PetscMalloc7(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
                          &m->arc, vesicles, &m->part, vesicles, &m->modulus));
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,

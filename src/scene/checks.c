@@ -172,6 +172,8 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
      "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
     {stretches && modulus == 0,
      "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
+    {!stretches && s->membrane.viscosity > 0,
+     "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
     {stretches && paper,
      "-membrane_law {-membrane_law}: not with -scheme_type {-scheme_type}, whose membranes keep their length; allowed: inextensible, or -scheme_type coupled"},
     {s->membrane.memory && (paper || s->membrane.derivative == DERIVATIVE_FD),

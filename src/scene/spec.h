@@ -49,6 +49,7 @@ typedef struct {
   RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
   RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
   PetscReal *modulus;       /* [vesicles] E_s */
+  PetscReal viscosity;      /* of membranes that stretch */
   PetscInt law;             /* LawType, of all membranes that stretch */
   PetscBool memory;         /* bending prefers the initial shape's curvature */
   PetscInt derivative;      /* DerivativeType */

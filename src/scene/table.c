@@ -178,6 +178,7 @@ static const OptionRow table[] = {
   {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges", &need_vesicles},
   {"-membrane_law", OPT_ENUM, AT(membrane.law), "inextensible", "inextensible|hooke|green|neo_hookean", "coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)", &need_vesicles},
   {"-membrane_stretching", OPT_REALS, AT(membrane.stretching), "0", ">=0", "E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)", &need_vesicles},
+  {"-membrane_viscosity", OPT_REAL, AT(membrane.viscosity), "0", ">=0", "of membranes that stretch: tension over the rate of the stretch (length^3/time)", &need_vesicles},
   {"-membrane_memory", OPT_BOOL, AT(membrane.memory), "false", "true|false", "coupled: shape memory, bending prefers the curvature that each part of the membrane has at the start; false: no curvature", &need_vesicles},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},

@@ -15,7 +15,7 @@ CIRCLE = f"{FREE} -flow_type shear -vesicle_semi_axes 1,1 -vesicle_bending 0 -ti
 ELLIPSE = f"{FREE} -vesicle_area {0.7 * math.pi!r} -vesicle_reduced_area 0.7 -vesicle_bending 0.1"
 FINE = "-vesicle_markers 65 -domain_cells 64,64 -time_step 0.025"
 TWO = "-domain_box -3,3,-3,3 -domain_cells 32,32 -flow_type shear -vesicle_count 2 -vesicle_center -1.2,.3,1.2,-.3"
-TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -membrane_memory true -time_step .05"
+TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -membrane_viscosity .5 -membrane_memory true -time_step .05"
 CASES = [(law, Ca) for law in ("hooke", "green", "neo_hookean") for Ca in CAPSULES[law]]
 
 
@@ -82,6 +82,14 @@ def test_box_contrast_and_number(tmp_path):
     assert [deformed(run), angle(run)] == pytest.approx(CAPSULES["ratio_5_at_15"], abs=2e-6)
     same = run_petves(tmp_path / "ca", f"{ratio} -flow_ca_stretching 0.1")
     assert deformed(same) == deformed(run)
+
+
+def test_membrane_viscosity(tmp_path):
+    """Ca = .1 and a membrane viscosity of 1: D, angle and frequency of a dense prototype."""
+    run = run_petves(tmp_path / "shear", f"{CIRCLE} {stretched('hooke', 10.0)} -membrane_viscosity 1 -time_end 16")
+    D, theta, frequency = CAPSULES["viscous"]
+    assert [deformed(run), angle(run)] == pytest.approx([D, theta], abs=5e-6)
+    assert run.series["frequency"][-1] == pytest.approx(frequency, rel=5e-5)
 
 
 @pytest.mark.parametrize("law", ["hooke", "green"])
