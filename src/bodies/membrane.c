@@ -36,6 +36,8 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   m->derivative = (DerivativeType)given->derivative;
   m->law = (LawType)given->law;
   m->viscosity = given->viscosity;
+  m->permeability = given->permeability;
+  for (int k = 0; k < 2; k++) m->osmotic[k] = given->osmotic.n == 2 ? given->osmotic.v[k] : 0;
   PetscCall(PetscMalloc7(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
                          &m->arc, vesicles, &m->part, vesicles, &m->modulus));
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,

@@ -20,15 +20,17 @@ typedef struct {
 
 typedef struct _p_Membrane *Membrane;
 struct _p_Membrane {
-  Layout layout;       /* borrowed; a body is a vesicle */
-  PetscReal *ds;       /* [vesicles] fixed material spacing: mean initial edge (length) */
-  PetscReal *A0, *L0;  /* [vesicles] initial area and length */
-  PetscReal bending;   /* the largest c_b */
-  PetscReal *part;     /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
-  LawType law;         /* of the membranes that stretch */
-  PetscReal viscosity; /* of membranes that stretch (length^3/time) */
-  PetscReal *modulus;  /* [vesicles] E_s (length^3/time^2); 0 of inextensible ones */
-  PetscReal *memory;   /* [M] curvature that bending prefers (1/length); NULL: none */
+  Layout layout;          /* borrowed; a body is a vesicle */
+  PetscReal *ds;          /* [vesicles] fixed material spacing: mean initial edge (length) */
+  PetscReal *A0, *L0;     /* [vesicles] initial area and length */
+  PetscReal bending;      /* the largest c_b */
+  PetscReal *part;        /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
+  LawType law;            /* of the membranes that stretch */
+  PetscReal permeability; /* P (time/length); 0: none */
+  PetscReal osmotic[2];   /* pressures inside and outside (length^2/time^2) */
+  PetscReal viscosity;    /* of membranes that stretch (length^3/time) */
+  PetscReal *modulus;     /* [vesicles] E_s (length^3/time^2); 0 of inextensible ones */
+  PetscReal *memory;      /* [M] curvature that bending prefers (1/length); NULL: none */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */

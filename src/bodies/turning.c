@@ -3,18 +3,19 @@
 #define EXPLICIT 0.3 /* of TurningReturn, what may pull along the old edges: order 3 bears 0.52, order 2 0.89 */
 
 /* How far a membrane under this tension comes back in a step, over what bending lets it: the largest of all waves k of
-       (sigma k/(4 nu a0))/(1 + c_b k^3/(4 nu a0)). */
-static PetscReal TurningReturn(Membrane m, PetscInt v, PetscReal slow, PetscReal sigma) {
+       (sigma k/(4 nu a0)) w/(1 + c_b k^3 w/(4 nu a0)),      w = 1 + 4 nu P k with a permeability P. */
+static PetscReal TurningReturn(Membrane m, PetscInt v, PetscReal nu, PetscReal a0, PetscReal sigma) {
   const PetscReal bending = m->bending * m->part[v];
   PetscReal largest = 0;
   for (PetscInt mode = 1; 2 * mode <= LayoutCount(m->layout, v); mode++) {
     const PetscReal k = 2 * PETSC_PI * mode / m->L0[v];
-    largest = PetscMax(largest, sigma * k / (slow + bending * k * k * k));
+    const PetscReal passing = k * (1 + 4 * nu * m->permeability * k);
+    largest = PetscMax(largest, sigma * passing / (4 * nu * a0 + bending * k * k * passing));
   }
   return largest;
 }
 
-PetscErrorCode TurningExpect(Forces forces, PetscReal slow, Vec expected) {
+PetscErrorCode TurningExpect(Forces forces, PetscReal nu, PetscReal a0, Vec expected) {
   const Turning *t = (const Turning *)ForcesFind(forces, "turning");
   const Layout l = t->membrane->layout;
   const PetscScalar *sigma;
@@ -24,7 +25,7 @@ PetscErrorCode TurningExpect(Forces forces, PetscReal slow, Vec expected) {
     const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
     PetscReal most = 0;
     for (PetscInt k = at; k < at + n; k++) most = PetscMax(most, sigma[k]);
-    const PetscReal part = 1 - EXPLICIT / PetscMax(EXPLICIT, TurningReturn(t->membrane, v, slow, most));
+    const PetscReal part = 1 - EXPLICIT / PetscMax(EXPLICIT, TurningReturn(t->membrane, v, nu, a0, most));
     for (PetscInt k = at; k < at + n; k++) t->tension[k] = part * PetscMax(0, sigma[k]);
   }
   PetscCall(VecRestoreArrayRead(expected, &sigma));

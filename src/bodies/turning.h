@@ -13,6 +13,6 @@ typedef struct {
 } Turning;
 
 /* TurningExpect - until the forces are placed again, let the expected tension (edge vector), where it is positive, pull
-   along the new edges, as far as waves of the membrane would otherwise be unstable in a step with slow = 4 nu a0. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode TurningExpect(Forces forces, PetscReal slow, Vec expected);
+   along the new edges, as far as waves of the membrane would otherwise be unstable in a step with a0, in fluid of the
+   viscosity nu. Not collective. */
+PETSC_EXTERN PetscErrorCode TurningExpect(Forces forces, PetscReal nu, PetscReal a0, Vec expected);

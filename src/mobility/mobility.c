@@ -1,4 +1,5 @@
 #include "mobility/mobility.h"
+#include "bodies/seepage.h"
 #include "markers/streamresponse.h"
 
 /* The markers' velocities beside the grid's: near field, double layer, lag. */
@@ -73,6 +74,7 @@ PetscErrorCode MobilityAddLayers(Mobility m, Vec F, Vec G, PetscScalar U[]) {
   if (m->near && F) {
     PetscCall(VecGetArrayRead(F, &a));
     PetscCall(NearFieldApply(m->near, -1, a, U));
+    SeepageApply(m->bodies->membrane, m->markers->X, -1, a, U);
     PetscCall(VecRestoreArrayRead(F, &a));
   }
   if (m->contrast && G) {

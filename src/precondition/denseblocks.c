@@ -1,4 +1,5 @@
 #include "precondition/denseblocks.h"
+#include "bodies/seepage.h"
 #include "base/agree.h"
 #include "problem/contrast.h"
 #include "precondition/denseblock.h"
@@ -139,6 +140,8 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->mobility->near)
         PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, law->first, law->n, Mob));
+      if (law->end == law->vesicle + 1)
+        SeepageAdd(m, law->vesicle, b->coupling->markers->X + 2 * law->first, h2, 2 * law->n, Mob);
       PetscCall(AssembleMotion(b, a0, law->first, law->n, &motion));
     }
     PetscCall(DenseBlockFactor(&b->block[k], a0, Mob, motion, &good));

@@ -2,6 +2,7 @@
 #include "problem/contrast.h"
 #include "precondition/denseblock.h"
 #include "layers/layerpairs.h"
+#include "bodies/seepage.h"
 #include "numerics/blas.h"
 
 /* What ContrastMatrix has of a vesicle of this shape, motion[2n][2n]. */
@@ -92,6 +93,7 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
   PetscCall(LayerSelf(&stokeslet, &s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, NULL, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
+  SeepageAdd(m, q->like, q->X, PetscSqr(s->coupling->fluid->grid->h), 2 * n, M);
   PetscCall(ShapeMotion(s, q, motion));
   LawPlace(block.law, s->a0, q->X);
   PetscCall(DenseBlockFactor(&block, s->a0, M, motion, good));

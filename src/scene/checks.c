@@ -138,9 +138,6 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
                   paper = split || penalty, spectral = s->membrane.derivative == DERIVATIVE_SPECTRAL,
                   exact = s->coupling.near_field == NEAR_EXACT;
   const PetscInt inertia = s->fluid.inertia;
-  const PetscBool stretches = s->membrane.law != LAW_INEXTENSIBLE;
-  PetscReal modulus = 0;
-  for (PetscInt k = 0; k < s->membrane.stretching.n; k++) modulus = PetscMax(modulus, s->membrane.stretching.v[k]);
   const SceneRule rules[] = {
     {!paper && strcmp(s->fluid.helmholtz, "fftw_tridiagonal"),
      "-helmholtz_type {-helmholtz_type}: not with -scheme_type {-scheme_type}, which solves in the modes of fftw_tridiagonal; allowed: fftw_tridiagonal, or -scheme_type split or penalty"},
@@ -168,24 +165,40 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
      "-fluid_inertia convective: not with -scheme_type penalty, here for unsteady Stokes flow; allowed: unsteady, or -scheme_type coupled"},
     {!penalty && s->scheme.stiffness != 0,
      "-penalty_stiffness {-penalty_stiffness}: -scheme_type {-scheme_type} has no springs, its length is a constraint; allowed: 0, or -scheme_type penalty"},
-    {!stretches && modulus > 0,
-     "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
-    {stretches && modulus == 0,
-     "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
-    {!stretches && s->membrane.viscosity > 0,
-     "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
-    {stretches && paper,
-     "-membrane_law {-membrane_law}: not with -scheme_type {-scheme_type}, whose membranes keep their length; allowed: inextensible, or -scheme_type coupled"},
-    {s->membrane.memory && (paper || s->membrane.derivative == DERIVATIVE_FD),
-     "-membrane_memory true: needs -scheme_type coupled and curvatures by -membrane_derivative spectral or bending; allowed: false, or these"},
-    {stretches && !s->scheme.length_target,
-     "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"},
-    {stretches && s->scheme.wanted > 0,
-     "-scheme_auto {-scheme_auto}: -membrane_law {-membrane_law} is not among what it was measured for; allowed: 0, or -membrane_law inextensible"},
     {s->time.adapt != ADAPT_NONE && s->scheme.order == 1,
      "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with -scheme_order 2 or 3"},
     {inertia == INERTIA_CONVECTIVE && s->scheme.order == 1,
      "-fluid_inertia convective: with -scheme_order {-scheme_order} an explicit convection is unstable at any step that is not tiny; allowed: -scheme_order 2 or 3"}};
+  return REFUSE(s, rules);
+}
+
+/* Membranes that stretch, remember, resist or let water through: what each of them needs. */
+static PetscErrorCode SceneCheckMembranes(Scene s) {
+  const SceneMembrane *m = &s->membrane;
+  const PetscBool paper = strcmp(s->scheme.type, "coupled"), stretches = m->law != LAW_INEXTENSIBLE;
+  PetscReal modulus = 0;
+  for (PetscInt k = 0; k < m->stretching.n; k++) modulus = PetscMax(modulus, m->stretching.v[k]);
+  const SceneRule rules[] = {
+    {!stretches && modulus > 0,
+     "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
+    {stretches && modulus == 0,
+     "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
+    {!stretches && m->viscosity > 0,
+     "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
+    {m->osmotic.n != 2,
+     "-membrane_osmotic: %.0f numbers given; allowed: two, inside and outside", {m->osmotic.n}},
+    {m->permeability == 0 && SceneGiven(s, "-membrane_osmotic"),
+     "-membrane_osmotic: -membrane_permeability {-membrane_permeability} lets no water pass; allowed: with a permeability above 0"},
+    {m->permeability > 0 && (paper || SceneHasContrast(s)),
+     "-membrane_permeability {-membrane_permeability}: needs -scheme_type coupled and one viscosity; allowed: 0, or these"},
+    {stretches && paper,
+     "-membrane_law {-membrane_law}: not with -scheme_type {-scheme_type}, whose membranes keep their length; allowed: inextensible, or -scheme_type coupled"},
+    {m->memory && (paper || m->derivative == DERIVATIVE_FD),
+     "-membrane_memory true: needs -scheme_type coupled and curvatures by -membrane_derivative spectral or bending; allowed: false, or these"},
+    {stretches && !s->scheme.length_target,
+     "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"},
+    {stretches && s->scheme.wanted > 0,
+     "-scheme_auto {-scheme_auto}: -membrane_law {-membrane_law} is not among what it was measured for; allowed: 0, or -membrane_law inextensible"}};
   return REFUSE(s, rules);
 }
 
@@ -253,6 +266,7 @@ static PetscErrorCode SceneCheckVesicles(Scene s) {
 PetscErrorCode SceneCheck(Scene scene) {
   PetscFunctionBeginUser;
   PetscCall(SceneCheckScheme(scene));
+  PetscCall(SceneCheckMembranes(scene));
   PetscCall(SceneCheckLengths(scene));
   PetscCall(SceneCheckFlow(scene));
   PetscCall(SceneCheckVesicles(scene));

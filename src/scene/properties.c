@@ -50,7 +50,7 @@ PetscBool SceneIsProjection(Scene scene) {
 
 PetscBool SceneHasAreaTarget(Scene scene) {
   const PetscBool papers = scene->membrane.derivative == DERIVATIVE_FD || SceneIsProjection(scene);
-  return scene->shape.vesicles && !papers ? PETSC_TRUE : PETSC_FALSE;
+  return scene->shape.vesicles && !papers && scene->membrane.permeability == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscBool SceneHasBoxPart(Scene scene) {

@@ -50,6 +50,8 @@ typedef struct {
   RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
   PetscReal *modulus;       /* [vesicles] E_s */
   PetscReal viscosity;      /* of membranes that stretch */
+  PetscReal permeability;   /* for water; 0: none */
+  RealList osmotic;         /* osmotic pressures inside and outside */
   PetscInt law;             /* LawType, of all membranes that stretch */
   PetscBool memory;         /* bending prefers the initial shape's curvature */
   PetscInt derivative;      /* DerivativeType */

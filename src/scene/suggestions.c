@@ -55,7 +55,7 @@ static const OptionSuggestion suggestions[] = {
      "-membrane_memory is meant (a constant curvature has no effect on a closed curve in the plane)?"},
     {"*shear_modulus *elastic *stretch *capsule", "-membrane_law and -membrane_stretching are meant?"},
     {"*surface_tension", "the tension follows from the membrane's length, which stays" NO},
-    {"*permeability", "the membrane lets no fluid through" NO},
+    {"*permeability *osmosis", "-membrane_permeability and -membrane_osmotic are meant?"},
     {"*constriction *stenosis", "-obstacle_shape constriction is meant?"},
     {"*3d -dim *dimension *axisymmetric", "two dimensions only, without axial symmetry" NO},
     {NULL, NULL}};

@@ -179,6 +179,8 @@ static const OptionRow table[] = {
   {"-membrane_law", OPT_ENUM, AT(membrane.law), "inextensible", "inextensible|hooke|green|neo_hookean", "coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)", &need_vesicles},
   {"-membrane_stretching", OPT_REALS, AT(membrane.stretching), "0", ">=0", "E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)", &need_vesicles},
   {"-membrane_viscosity", OPT_REAL, AT(membrane.viscosity), "0", ">=0", "of membranes that stretch: tension over the rate of the stretch (length^3/time)", &need_vesicles},
+  {"-membrane_permeability", OPT_REAL, AT(membrane.permeability), "0", ">=0", "coupled: water passes the membranes at this times its pressure inside less that outside; 0: none (time/length)", &need_vesicles},
+  {"-membrane_osmotic", OPT_REALS, AT(membrane.osmotic), "0,0", ">=0", "of permeable membranes: osmotic pressures inside, at the first area, and outside; the higher one draws water (length^2/time^2)", &need_vesicles},
   {"-membrane_memory", OPT_BOOL, AT(membrane.memory), "false", "true|false", "coupled: shape memory, bending prefers the curvature that each part of the membrane has at the start; false: no curvature", &need_vesicles},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},

@@ -23,7 +23,7 @@ static PetscErrorCode TurnEdges(Scheme s, Coupled *d) {
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), d->next.sigma));
-  PetscCall(TurningExpect(s->coupling->forces, 4 * s->fluid->nu * s->fluid->a0, d->next.sigma));
+  PetscCall(TurningExpect(s->coupling->forces, s->fluid->nu, s->fluid->a0, d->next.sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -53,7 +53,9 @@ static PetscErrorCode CheckLimits(Scheme s, PetscInt v, const PetscScalar X[], c
   MembraneMeasure(m, v, X, &measures);
   const PetscReal found[] = {measures.edge_ratio, measures.area / m->A0[v] - 1, measures.length / m->L0[v] - 1};
   for (int k = 0; k < 3; k++) {
-    if (limit[k] == 0 || PetscAbsReal(found[k]) <= limit[k] || (k == 2 && MembraneStretches(m, v))) continue;
+    if (limit[k] == 0 || PetscAbsReal(found[k]) <= limit[k] || (k == 2 && MembraneStretches(m, v)) ||
+        (k == 1 && m->permeability > 0))
+      continue;
     PetscCall(PetscSNPrintf(failure, PETVES_MAX_MESSAGE, "vesicle %" PetscInt_FMT ": %s %.3g beyond %s %g", v + 1,
                             what[k], (double)found[k], names[k], (double)limit[k]));
     PetscCall(SchemeAdvise(s, advice[k]));

@@ -1,4 +1,5 @@
 #include "scheme/stepcommon.h"
+#include "bodies/seepage.h"
 #include "base/agree.h"
 
 void SchemeImplement(Scheme s, const SchemeOps *ops, void *data) {
@@ -109,6 +110,19 @@ static PetscErrorCode CheckBodies(Scheme s, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* background += the osmotic velocity, of permeable membranes. */
+static PetscErrorCode AddOsmotic(Scheme s, Vec X) {
+  const PetscScalar *x;
+  PetscScalar *u;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(s->background, &u));
+  SeepageOsmotic(s->membrane, x, u);
+  PetscCall(VecRestoreArray(s->background, &u));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t) {
   const char *failure = s->report.failure;
   PetscFunctionBeginUser;
@@ -120,6 +134,7 @@ PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treadi
   if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeBackground(s, X, t));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AddOsmotic(s, X));
   PetscCall(CouplingStretching(s->coupling, s->background, s->g));
   PetscCall(VecScale(s->g, -1));
   PetscFunctionReturn(PETSC_SUCCESS);

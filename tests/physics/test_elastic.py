@@ -148,6 +148,34 @@ def test_memory_swings_and_tumbles(tmp_path):
     assert angles.min() < -0.45 and angles.max() > 0.45
 
 
+def test_water_inflates_a_circle(tmp_path):
+    """E_s = 2, membrane viscosity 1.5, permeability .3, osmotic pressures 3 pi/A and 1.2: R(2) of the equation for R, which
+    orders 2 and 3 reach with their order."""
+    circle = f"{FREE} -vesicle_semi_axes 1,1 -vesicle_bending 0 {stretched('hooke', 2.0)} -membrane_viscosity 1.5"
+    water = "-membrane_permeability 0.3 -membrane_osmotic 3,1.2 -time_end 2"
+    error = {}
+    for order, steps in ((2, 20), (2, 40), (3, 10), (3, 20)):
+        options = f"{circle} {water} -scheme_order {order} -time_step {2 / (2 * steps)}"
+        run = run_petves(tmp_path / f"{order}.{steps}", options)
+        error[order, steps] = abs(math.sqrt(run.series["area"][-1] / math.pi) - CAPSULES["inflated"])
+    assert error[2, 20] < 1e-4 and error[2, 40] < error[2, 20] / 3.5
+    assert error[3, 10] < 2e-5 and error[3, 20] < error[3, 10] / 6
+
+
+def test_permeable_vesicles(tmp_path):
+    """At rest they swell into circles, whose tension is 3/2 - 1/2 of c_b/R0^2 below zero; in shear V and angle settle."""
+    scene = f"{ELLIPSE} -vesicle_bending 1"
+    run = run_petves(tmp_path / "rest", f"{scene} -membrane_permeability 0.05 -time_step 0.1 -time_end 60")
+    assert 4 * math.pi * run.series["area"][-1] / run.series["length"][-1] ** 2 == pytest.approx(1, abs=1e-9)
+    assert run.saved("vesicle/tension") == pytest.approx(-1, abs=1e-4)
+    for chi, (P, V, theta) in CAPSULES["permeable"].items():
+        rate = f"-flow_type shear -flow_rate {chi} -time_step {0.05 / math.sqrt(int(chi))} -time_end {90 / int(chi)}"
+        run = run_petves(tmp_path / chi, f"{scene} {rate} -membrane_permeability {P}")
+        last = {name: values[-1] for name, values in run.series.items()}
+        assert 4 * math.pi * last["area"] / last["length"] ** 2 == pytest.approx(V, abs=1e-3)
+        assert angle(run) == pytest.approx(theta, abs=1e-3)
+
+
 def test_ranks_restart_and_mixtures(tmp_path):
     """Two vesicles, one that stretches and one that does not, with contrast."""
     names = ("center_x_1", "inclination_2", "length_1", "energy_stretching", "coupled_its")
