@@ -42,7 +42,7 @@ def test_restart_gives_the_same_bits(name, straight, tmp_path):
     assert len(without_wall(folder / "series.csv")) > N + 1
     assert without_wall(folder / "series.csv") == without_wall(whole.folder / "series.csv")
     ours, theirs = frames(folder), frames(whole.folder)
-    assert set(ours) == set(theirs) and len(ours) == 9
+    assert set(ours) == set(theirs) and len(ours) == 12
     for key in ours:
         np.testing.assert_array_equal(ours[key], theirs[key], err_msg=key)
     totals = [json.loads((f / "summary.json").read_text())["totals"] for f in (folder, whole.folder)]

@@ -178,7 +178,7 @@ def test_report_draws_the_membrane_in_a_browser(name, frame, periods, request, t
             "--no-sandbox",
             "--headless",
             "--hide-scrollbars",
-            "--window-size=1200,900",
+            "--window-size=1200,1000",
             "--enable-logging=stderr",
         ]
         + ["--virtual-time-budget=2000", f"--screenshot={shot}", f"file://{tmp_path}/page.html#frame={frame}"],
