@@ -80,34 +80,6 @@ static PetscBool IsOneOf(const char *word, const char *const list[]) {
   return PETSC_FALSE;
 }
 
-/* -help and -version are answered before MPI begins; -help all is left to the run, by its name. -1: neither is there.
- */
-static int Answer(int n, char **word) {
-  static const char *const help[] = {"-help", "--help", "-h", NULL}, *const version[] = {"-version", "--version", NULL};
-  static char plain[] = "-help"; /* without a value, which PETSc 3.18 would read after it has freed it */
-  char line[PETVES_MAX_MESSAGE];
-  for (int k = 0; k < n; k++) {
-    const char *topic = k + 1 < n && word[k + 1][0] != '-' ? word[k + 1] : NULL;
-    if (IsOneOf(word[k], version)) {
-      if (IsFirst() && !PetvesVersion(line, sizeof(line))) printf("%s\n", line);
-      return 0;
-    }
-    if (!IsOneOf(word[k], help)) continue;
-    if (topic && !strcmp(topic, "all")) {
-      word[k] = word[k + 1] = plain;
-      return -1;
-    }
-    if (!IsFirst()) return 0;
-    if (!topic || !strcmp(topic, "options")) printf("%s", topic ? help_line : usage);
-    if (!topic || SceneHelp(stdout, strcmp(topic, "options") ? topic : NULL)) return 0;
-    fprintf(stderr,
-            "petves: error: -help %.100s: in no option's name or help; allowed: options, all, a tool, or a word\n",
-            topic);
-    return 1;
-  }
-  return -1;
-}
-
 /* The path of a file in one of the places, which count from the folder of this program. FALSE: it is in none. */
 static PetscBool FindBeside(const char *const places[], const char *file, char path[PETSC_MAX_PATH_LEN]) {
   char self[PETSC_MAX_PATH_LEN] = "", pattern[2 * PETSC_MAX_PATH_LEN];
@@ -166,6 +138,36 @@ static int StartTool(int argc, char **argv) {
   return 1;
 }
 
+/* -help and -version are answered before MPI begins; -help all is left to the run, by its name. -1: neither is there.
+ */
+static int Answer(int n, char **word) {
+  static const char *const help[] = {"-help", "--help", "-h", NULL}, *const version[] = {"-version", "--version", NULL};
+  static char tool_help[] = "--help";
+  static char plain[] = "-help"; /* without a value, which PETSc 3.18 would read after it has freed it */
+  char line[PETVES_MAX_MESSAGE];
+  for (int k = 0; k < n; k++) {
+    const char *topic = k + 1 < n && word[k + 1][0] != '-' ? word[k + 1] : NULL;
+    if (IsOneOf(word[k], version)) {
+      if (IsFirst() && !PetvesVersion(line, sizeof(line))) printf("%s\n", line);
+      return 0;
+    }
+    if (!IsOneOf(word[k], help)) continue;
+    if (topic && IsOneOf(topic, tools)) return StartTool(3, (char *[]){NULL, word[k + 1], tool_help});
+    if (topic && !strcmp(topic, "all")) {
+      word[k] = word[k + 1] = plain;
+      return -1;
+    }
+    if (!IsFirst()) return 0;
+    if (!topic || !strcmp(topic, "options")) printf("%s", topic ? help_line : usage);
+    if (!topic || SceneHelp(stdout, strcmp(topic, "options") ? topic : NULL)) return 0;
+    fprintf(stderr,
+            "petves: error: -help %.100s: in no option's name or help; allowed: options, all, a tool, or a word\n",
+            topic);
+    return 1;
+  }
+  return -1;
+}
+
 static PetscErrorCode Run(PetscBool *good) {
   Simulation simulation = NULL;
   PetscErrorCode error;
@@ -197,15 +199,11 @@ static int RunOrUsage(int argc, char **argv) {
 }
 
 int PetvesMain(int argc, char **argv) {
-  static char options_file[] = "-options_file", help[] = "-help", tool_help[] = "--help";
+  static char options_file[] = "-options_file", help[] = "-help";
   const PetscBool run = argc > 1 && !strcmp(argv[1], "run") ? PETSC_TRUE : PETSC_FALSE;
   char *scene = NULL, **words;
   int status, n = 1;
   if (argc > 1 && !strcmp(argv[1], "help")) argv[1] = help;
-  if (argc > 2 && !strcmp(argv[1], help) && IsOneOf(argv[2], tools)) {
-    argv[1] = argv[2];
-    argv[2] = tool_help;
-  }
   if (argc > 1 && IsOneOf(argv[1], tools)) return StartTool(argc, argv);
   if (run) argc--, argv++; /* petves run FILE is petves FILE, petves run -option is petves -option */
   if (argc > 1 && argv[1][0] != '-') scene = SceneFile(argv[1]);

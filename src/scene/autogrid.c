@@ -24,7 +24,8 @@ static const struct {
 #define LEEWAY 0.01 /* of R0, by which markers fitted to a curve may miss it */
 
 AutoFluid SceneAutoFluid(Scene scene, PetscReal R0) {
-  if (SceneHasInertia(scene, R0)) return AUTO_INERTIA;
+  const char *why;
+  if (SceneHasInertia(scene, R0, &why)) return AUTO_INERTIA;
   return SceneHasBoxPart(scene) ? AUTO_BOX_PART : AUTO_NO_BOX_PART;
 }
 

@@ -81,8 +81,8 @@ static PetscBool FlowIsPaper(Scene scene) {
   return type == FLOW_QUIESCENT || type == FLOW_SHEAR || FlowIsCustom(&scene->flow) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether the model has inertia, and why: by the first of these that holds. */
-static PetscBool InertiaChoose(Scene s, PetscReal R0, const char **why) {
+/* The first of these that holds decides. */
+PetscBool SceneHasInertia(Scene s, PetscReal R0, const char **why) {
   const struct {
     PetscInt holds;
     PetscBool has;
@@ -101,11 +101,6 @@ static PetscBool InertiaChoose(Scene s, PetscReal R0, const char **why) {
   while (!rule->holds) rule++;
   *why = rule->why;
   return rule->has;
-}
-
-PetscBool SceneHasInertia(Scene scene, PetscReal R0) {
-  const char *why;
-  return InertiaChoose(scene, R0, &why);
 }
 
 void SceneModel(Scene s, char text[SCENE_MODEL]) {
@@ -145,7 +140,7 @@ static PetscErrorCode SceneWarnOfSparse(Draft scene) {
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = SceneCarriedReynolds(scene), R0 = SceneLargestRadius(scene);
   const PetscBool custom = FlowIsCustom(&scene->flow);
-  const PetscBool baseline = SceneIsProjection(scene), inertia = InertiaChoose(scene, R0, &scene->why_inertia);
+  const PetscBool baseline = SceneIsProjection(scene), inertia = SceneHasInertia(scene, R0, &scene->why_inertia);
   PetscBool seamless;
   int dir;
   PetscFunctionBeginUser;

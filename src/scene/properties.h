@@ -28,8 +28,8 @@ PETSC_EXTERN PetscBool SceneHasContrast(Scene scene);
 PETSC_EXTERN PetscReal SceneViscosityRatio(Scene scene, PetscInt vesicle);
 
 /* SceneHasInertia (inertia.c) - whether -fluid_inertia, or what auto stands for when the largest vesicle has this
-   radius (0: none), has inertia; the flow is known. Not collective. */
-PETSC_EXTERN PetscBool SceneHasInertia(Scene scene, PetscReal R0);
+   radius (0: none), has inertia, and why; the flow is known. Not collective. */
+PETSC_EXTERN PetscBool SceneHasInertia(Scene scene, PetscReal R0, const char **why);
 
 /* SceneIsProjection - whether the scheme is one of the baselines, split or penalty, which stand on a projection step.
    SceneHasAreaTarget - whether each step aims at the first areas of the vesicles: coupled, but for the finite

