@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ctypes
 import difflib
-import re
 
 import numpy as np
 
 from petves.errors import Error
+
+#: What energies there are, as in the columns energy_NAME.
+ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching")
+ENERGY_COLUMNS = [f"energy_{name}" for name in ENERGIES]
 
 
 def turned_angle(inclination: np.ndarray) -> np.ndarray:
@@ -156,7 +159,7 @@ class Measures:
     @property
     def energy(self) -> float:
         """Energy of all kinds (length^4/time^2): kinetic, bending, gravity, contact, stretching."""
-        return sum(self.measure(name) for name in self._columns if re.fullmatch("energy_[a-z]+", name))
+        return sum(self._row[self._columns[name]] for name in ENERGY_COLUMNS if name in self._columns)
 
     @property
     def reduced_area(self) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 from petves.curves import smooth_curve, solid_outline, trigonometric
 from petves.errors import RunError as RunError
 from petves.files import read_file, read_summary
+from petves.measures import ENERGIES
 from petves.runfiles import read_frames, read_h5, read_series
 
 #: Vesicles up to which series.csv has columns of each.
@@ -29,9 +30,6 @@ COLUMNS = (
     "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall nsolve tension_its"
     " bending_its coupled_its"
 ).split()
-
-#: What energies there are, as in the columns energy_NAME.
-ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching")
 
 
 @dataclass
@@ -267,10 +265,6 @@ class Run:
     def centroid(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the centroid of the area of one vesicle at a saved time (length), shape (2,)."""
         return centroid(self.outline(frame, vesicle))
-
-    def at_step(self, frame: int, values: np.ndarray) -> float:
-        """Return the one of values, a step each, that is of a saved time."""
-        return float(values[np.argmin(np.abs(self.series["time"] - self.time[frame]))])
 
     def phase_angle(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the phase angle of where each tension is about the centroid of the area, in (-pi, pi]."""

@@ -109,16 +109,9 @@ def submit(
     varied = ([word for name, value in point.items() for word in ("--vary", name, value)] for point in points)
     _replace(_made(folder) / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
     wrapped = f'eval "$(sed -n "$SLURM_ARRAY_TASK_ID p" {shlex.quote(str(folder / "tasks"))})"'
-    words = [
-        f"--array=1-{len(points)}",
-        f"--ntasks={ranks}",
-        "--job-name=petves",
-        *shlex.split(slurm),
-        "--wrap",
-        wrapped,
-    ]
+    words = [f"--array=1-{len(points)}", f"--ntasks={ranks}", "--job-name=petves", *shlex.split(slurm)]
     try:
-        done = subprocess.run(["sbatch", *words], capture_output=True, text=True)
+        done = subprocess.run(["sbatch", *words, "--wrap", wrapped], capture_output=True, text=True)
     except FileNotFoundError:
         raise Error("sbatch: no such program; allowed: --slurm where Slurm is") from None
     if done.returncode:

@@ -35,12 +35,11 @@ class Window:
             raise RunError(f"follow {follow}: no such vesicle; allowed: 1 to {run.vesicles}")
         if not any(run.periods):
             raise RunError("follow: the box has no periodic direction to follow a vesicle in")
-        center = run.centroid(frame, follow - 1)
+        center, step = run.centroid(frame, follow - 1), np.argmin(np.abs(run.series["time"] - run.time[frame]))
         for d, period in enumerate(run.periods):
             if period:
                 self.origin[d] = center[d]
-                speeds = run.each(f"velocity_{'xy'[d]}")[:, follow - 1]
-                self.velocity[d] = np.nan_to_num(run.at_step(frame, speeds))
+                self.velocity[d] = np.nan_to_num(run.each(f"velocity_{'xy'[d]}")[step, follow - 1])
                 self.limits[2 * d : 2 * d + 2] = -period / 2, period / 2
                 first = int(np.floor((center[d] - period / 2 - run.box[2 * d]) / run.h))
                 self._cells[d] = first + np.arange(len(self._cells[d]) + 1)
