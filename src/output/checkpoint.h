@@ -14,7 +14,7 @@
 #include "output/record.h"
 #include "output/tracers.h"
 
-#define CHECKPOINT_FORMAT 8
+#define CHECKPOINT_FORMAT 9
 #define CHECKPOINT_TAIL "petves checkpoint, crc32 %08x\n"
 #define CHECKPOINT_TAIL_LENGTH 34
 
