@@ -140,9 +140,11 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->mobility->near)
         PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, law->first, law->n, Mob));
-      if (law->end == law->vesicle + 1)
-        SeepageAdd(m, law->vesicle, b->coupling->markers->X + 2 * law->first, h2, 2 * law->n, Mob);
       PetscCall(AssembleMotion(b, a0, law->first, law->n, &motion));
+    }
+    for (PetscInt v = law->vesicle; v < law->end; v++) {
+      const PetscInt at = 2 * (m->layout->start[v] - law->first);
+      SeepageAdd(m, v, b->coupling->markers->X + 2 * m->layout->start[v], h2, 2 * law->n, Mob + at * (2 * law->n + 1));
     }
     PetscCall(DenseBlockFactor(&b->block[k], a0, Mob, motion, &good));
     if (!b->together) PetscCall(PetscFree(motion));

@@ -176,6 +176,14 @@ def test_permeable_vesicles(tmp_path):
         assert angle(run) == pytest.approx(theta, abs=1e-3)
 
 
+def test_two_permeable_vesicles(tmp_path):
+    """In a box with a wall: the same on other ranks and after a restart, in few iterations."""
+    pair = TWO.replace(" -vesicle_viscosity_ratio 3,.5", "").replace("-membrane_law green -membrane_viscosity .5", "")
+    water = "-vesicle_bending .05 -membrane_permeability 0.2 -membrane_osmotic 1,.5"
+    found = agree(tmp_path, f"{pair} {water}", 0.2, 0.4, ("center_x_1", "area_2", "inclination_2"), (3,))
+    assert found["whole"].series["coupled_its"][2:].mean() < 5
+
+
 def test_ranks_restart_and_mixtures(tmp_path):
     """Two vesicles, one that stretches and one that does not, with contrast."""
     names = ("center_x_1", "inclination_2", "length_1", "energy_stretching", "coupled_its")
