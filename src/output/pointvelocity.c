@@ -37,7 +37,7 @@ static PetscErrorCode PointLayers(PointVelocity *p) {
   PetscReal *X, *F, *J;
   Vec forces;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(l->bodies, &p->layer));
+  PetscCall(PetscCalloc1(2 * l->bodies, &p->layer));
   PetscCall(PetscMalloc3(2 * l->M, &X, 2 * l->M, &F, 2 * l->M, &J));
   PetscCall(VecDuplicate(q->X, &forces));
   PetscCall(CouplingForces(s->coupling, q->t, q->sigma, q->X, forces));
@@ -47,10 +47,10 @@ static PetscErrorCode PointLayers(PointVelocity *p) {
   PetscCall(VecDestroy(&forces));
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt n = LayoutCount(l, v), first = 2 * l->start[v];
-    PetscCall(CurveLayerCreate(&stokeslet, n, nu, X + first, F + first, &p->layer[v][0]));
+    PetscCall(CurveLayerCreate(&stokeslet, n, nu, X + first, F + first, &p->layer[2 * v]));
     if (!contrast || contrast->ratio[v] == 1) continue;
     for (PetscInt k = first; k < first + 2 * n; k++) J[k] *= 1 - contrast->ratio[v];
-    PetscCall(CurveLayerCreate(&stresslet, n, nu, X + first, J + first, &p->layer[v][1]));
+    PetscCall(CurveLayerCreate(&stresslet, n, nu, X + first, J + first, &p->layer[2 * v + 1]));
   }
   PetscCall(PetscFree3(X, F, J));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -70,9 +70,9 @@ PetscErrorCode PointVelocityBegin(Scheme s, PointVelocity *p) {
 static void PointLayersAdd(const PointVelocity *p, const PetscReal x[2], PetscReal u[2]) {
   PetscReal ratio = 1, pressure = 0;
   for (PetscInt v = 0; p->layer && v < p->scheme->membrane->layout->bodies; v++)
-    for (int kind = 0; kind < 2 && p->layer[v][kind]; kind++) {
+    for (int kind = 0; kind < 2 && p->layer[2 * v + kind]; kind++) {
       PetscBool inside = PETSC_FALSE;
-      CurveLayerAdd(p->layer[v][kind], x, u, &pressure, &inside);
+      CurveLayerAdd(p->layer[2 * v + kind], x, u, &pressure, &inside);
       if (kind && inside) ratio = p->scheme->coupling->mobility->contrast->ratio[v];
     }
   for (int d = 0; d < 2; d++) u[d] /= ratio;
@@ -125,7 +125,7 @@ PetscErrorCode PointVelocityAt(PointVelocity *p, PetscInt n, const PetscReal X[]
 PetscErrorCode PointVelocityEnd(PointVelocity *p) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; p->layer && v < p->scheme->membrane->layout->bodies; v++)
-    for (int kind = 0; kind < 2; kind++) PetscCall(CurveLayerDestroy(&p->layer[v][kind]));
+    for (int kind = 0; kind < 2; kind++) PetscCall(CurveLayerDestroy(&p->layer[2 * v + kind]));
   PetscCall(PetscFree(p->layer));
   PetscCall(PetscFree(p->cell));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -12,10 +12,9 @@
 #include "scheme/stepcommon.h"
 
 typedef struct {
-  Scheme scheme;   /* borrowed */
-  PetscReal *cell; /* [cells][2] u - u_inf of all ranks' cells; NULL in unbounded fluid */
-  CurveLayer (
-      *layer)[2]; /* [vesicles] in unbounded fluid: single, and double where a viscosity is another; else NULL */
+  Scheme scheme;     /* borrowed */
+  PetscReal *cell;   /* [cells][2] u - u_inf of all ranks' cells; NULL in unbounded fluid */
+  CurveLayer *layer; /* [vesicles][2] in unbounded fluid: single, and double where a viscosity is another; else NULL */
 } PointVelocity;
 
 /* PointVelocityAt - u[2n] at X[2n], which are the same on all ranks; each rank computes a share. Collective; stops with

@@ -150,8 +150,8 @@ static void JsonPrintVersions(FILE *f) {
           release);
 }
 
-/* Print the model of the fluid, the Reynolds number (null: not known) and the largest CFL number of a step (0 without
- * convection). */
+/* Print the model of the fluid, the Reynolds number (null: not known) and the largest CFL number of a step (0
+   without convection). */
 static void JsonPrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
   static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
   fprintf(f, "  \"inertia\": \"%s\",\n", names[scene->fluid.inertia]);

@@ -15,8 +15,8 @@ typedef struct {
   PetscBool moving; /* U is known */
 } Tracers;
 
-/* TracersCreate - where the options put them; stops with the user's message. TracersMove - to the scheme's new state.
- * Collective. */
+/* TracersCreate - where the options put them; stops with the user's message. TracersMove - to the scheme's new
+   state. Collective. */
 PETSC_EXTERN PetscErrorCode TracersCreate(Scene scene, Tracers *tracers);
 PETSC_EXTERN PetscErrorCode TracersMove(Tracers *tracers, Scheme scheme);
 PETSC_EXTERN PetscErrorCode TracersDestroy(Tracers *tracers);
