@@ -20,6 +20,7 @@ PERIODIC, FREE = (f"-domain_bc_x {bc} -domain_bc_y {bc}" for bc in ("periodic", 
 ROWS = ",".join(f"{x},{y}" for x in (-0.6, -0.2, 0.2, 0.6) for y in (-0.55, 0, 0.55))
 TWELVE = f"-vesicle_count 12 -vesicle_center {ROWS} -vesicle_semi_axes 0.08,0.12 -vesicle_markers 16"
 SOLID = "-obstacle_shape posts -obstacle_radius 0.2 -obstacle_center 0.7,0.7"
+STRETCHING = "-membrane_law hooke -membrane_stretching 1 -membrane_viscosity 1 -membrane_permeability 0.1"
 POSTS = f"-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 {SOLID}"
 
 #: Options and status. Restarts: one that goes on, one whose first step is refused, one of another scene.
@@ -50,6 +51,7 @@ LONG = SHORT | {
         "-obstacle_velocity 1,0",
         0,
     ),
+    "membranes": (f"{TWO_STEPS} {STRETCHING} -membrane_memory true -tracer_grid 2,2", 0),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -time_end 0.03", 0),
 }
