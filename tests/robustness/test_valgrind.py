@@ -134,7 +134,7 @@ def test_bits_do_not_depend_on_what_memory_held(box, contrast, tmp_path):
         first.append({name: f"{values[0]}" for name, values in rows.items() if name != "wall"})
     assert len(set(final)) == 1 and first[0] == first[1] == first[2]
     if box == POSTS:
-        assert float(first[0]["flux"]) == pytest.approx(4 / 3, rel=1e-12)  # before anything acts, the background's
+        assert 0 < float(first[0]["flux"]) < 4 / 3  # less than the background's, by the post
 
 
 def test_memory_of_the_program(checkpoint, tmp_path):
