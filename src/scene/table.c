@@ -272,11 +272,31 @@ static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
         (void)snprintf(value, OPTION_MAX_NAME, "%de%d", steps[s], k);
 }
 
+/* Between walls in y the Poiseuille flow vanishes on both. */
+static PetscBool IsWalled(const void *scene) {
+  const Scene s = (Scene)scene;
+  const RealList box = s->domain.box; /* not checked yet */
+  if (s->flow.type != FLOW_POISEUILLE || s->fluid.bc[1] != BC_WALL || box.n != 4) return PETSC_FALSE;
+  return box.v[2] < box.v[3] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void HalfHeight(const void *scene, char value[OPTION_MAX_NAME]) {
+  const PetscReal *box = ((Scene)scene)->domain.box.v;
+  (void)snprintf(value, OPTION_MAX_NAME, "%.15g", (double)(box[3] - box[2]) / 2);
+}
+
+static void MiddleHeight(const void *scene, char value[OPTION_MAX_NAME]) {
+  const PetscReal *box = ((Scene)scene)->domain.box.v;
+  (void)snprintf(value, OPTION_MAX_NAME, "%.15g", (double)(box[2] + box[3]) / 2);
+}
+
 /* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
    coupled scheme. The box part is the grid's. */
 /* clang-format off */
 const OptionDefault scene_defaults[] = {
   {"-flow_type", HasFormula, "formula", NULL, "it is given by formulas", NULL},
+  {"-flow_half_width", IsWalled, NULL, HalfHeight, "poiseuille, from wall to wall", "between walls in y: half their distance"},
+  {"-flow_center_y", IsWalled, NULL, MiddleHeight, "poiseuille, from wall to wall", "poiseuille between walls in y: their middle"},
   {"-vesicle_reduced_area", IsBiconcave, "0.65", NULL, "the outline is biconcave", "biconcave: 0.35 to 0.9, %s when not given"},
   {"-scheme_order", IsProjection, "1", NULL, "splitting errors and forward steps of markers are of first order", "split and penalty are of order %s"},
   {"-delta_type", IsProjection, "ib6", NULL, "the paper's kernel", "split, penalty: %s"},
