@@ -11,7 +11,7 @@ from petves.curves import trigonometric
 from petves.run import CURVE, Run
 from petves.views.field import SOLID, draw_solids
 from petves.views.figures import Look, legend_above, new_figure, new_sheet
-from petves.views.plot import plot_run, is_steady
+from petves.views.plot import is_steady, plot_conservation, plot_energy, plot_run
 from petves.views.report import report
 from petves.views.window import Window
 from petves.views.words import key_numbers
@@ -142,6 +142,19 @@ def test_legend_stands_over_the_data():
     figure.canvas.draw()
     legend, panel = axes.get_legend().get_window_extent(), axes.get_window_extent()
     assert legend.y0 >= panel.y1 - 1 and legend.y1 <= figure.bbox.y1 + 1
+
+
+def test_capsules_lengthen_without_an_error(run, monkeypatch):
+    """Of an unstressed start the energies are over their largest sum, and a length that may change has no error."""
+    zero, series = run.series["time"] * 0, dict(run.series)
+    series |= {f"energy_{name}": zero for name in ("bending", "kinetic", "gravity", "contact")}
+    stretched = dataclasses.replace(run, series=series | {"energy_stretching": np.linspace(1e-27, 2, len(zero))})
+    drawn = []
+    monkeypatch.setattr("petves.views.plot.save_figure", lambda figure, *_: drawn.append(figure.axes[0]))
+    plot_energy(stretched)
+    plot_conservation(stretched)
+    assert drawn[0].lines[0].get_ydata()[-1] == 1
+    assert [line.get_label()[:4] for line in drawn[1].lines] == ["area"]
 
 
 def test_a_is_steady_is_told():

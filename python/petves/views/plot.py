@@ -94,12 +94,13 @@ def plot_run(
 
 
 def plot_energy(run: Run, look: Look = PLAIN) -> Path:
-    """Draw the energies of a run and their sum over the initial sum (or over the largest, if that is not positive)."""
+    """Draw the energies of a run and their sum over the initial sum (or over the largest, if that is zero or less)."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time, parts = run.series["time"], run.energies()
     total = sum(parts.values())
-    scales = (total[0], "E_0"), (np.max(np.abs(total)), r"E_{\max}"), (1.0, "1")
-    scale, name = next(one for one in scales if one[0] > 0)
+    largest = np.max(np.abs(total))
+    scales = (total[0], "E_0"), (largest, r"E_{\max}"), (1.0, "1")
+    scale, name = next(one for one in scales if one[0] > 1e-12 * largest)
     if len(parts) > 1:
         axes.plot(time, total / scale, "k-", lw=2, label="total $E$")
     styles = {"bending": "--C0", "kinetic": "-.C1", "gravity": ":C2", "contact": ":C3", "stretching": "--C4"}
@@ -111,10 +112,12 @@ def plot_energy(run: Run, look: Look = PLAIN) -> Path:
 
 
 def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
-    """Draw the relative errors of area and length against time, on a logarithmic axis."""
+    """Draw the relative errors of area, and of length where no membrane stretches, against time on a logarithmic axis."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time = run.series["time"][1:]
-    labels = {"area_error": "area, $|A - A_0|/A_0$", "length_error": "length, $|L - L_0|/L_0$"}
+    labels = {"area_error": "area, $|A - A_0|/A_0$"}
+    if "energy_stretching" not in run.series:
+        labels["length_error"] = "length, $|L - L_0|/L_0$"
     for (column, label), style in zip(labels.items(), ("-", "--")):
         axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
     dress(axes, xlabel="time $t$", ylabel="relative error")
