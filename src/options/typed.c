@@ -289,8 +289,9 @@ static void TypedReadFile(Typed *t, const char *option, const char *path, const 
   if (!text && outer && outer->number)
     TypedWrong(t, outer, "%s (%s); allowed: a readable file of options", f ? "not read" : "cannot be opened", why);
   else if (!text)
-    TypedWrong(t, outer ? outer : &(Source){0}, "%s %.300s: %s (%s); allowed: a readable file of options", option, path,
-               f ? "not read" : "cannot be opened", why);
+    TypedWrong(t, outer ? outer : &(Source){0}, "%s %.300s: %s (%s); allowed: a readable file of options%s", option,
+               path, f ? "not read" : "cannot be opened", why,
+               strcmp(option, "-options_file") || strpbrk(path, "./") ? "" : ", or a scene that petves scenes lists");
   else if (named || strcasecmp(option, "-options_file"))
     TypedTakeYaml(t, &from, text, length);
   else

@@ -88,13 +88,18 @@ PetscErrorCode SummaryBegin(Summary *s) {
 }
 
 /* The lines that only a run with vesicles has. */
-static PetscErrorCode TablePrintVesicles(MPI_Comm comm, const Record *record, PetscInt steps) {
+static PetscErrorCode TablePrintVesicles(MPI_Comm comm, const Summary *s, PetscInt steps) {
+  const Record *record = s->record;
   const PetscReal *r = record->last;
   PetscFunctionBeginUser;
   PetscCall(PetvesSay(comm, "  energy, kinetic and bending   %.6e  %.6e\n", (double)r[COLUMN_KINETIC],
                       (double)r[COLUMN_BENDING]));
-  PetscCall(PetvesSay(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
-                      (double)r[COLUMN_LENGTH_ERROR]));
+  if (s->scheme->membrane->law == LAW_INEXTENSIBLE)
+    PetscCall(PetvesSay(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
+                        (double)r[COLUMN_LENGTH_ERROR]));
+  else
+    PetscCall(PetvesSay(comm, "  area error, change of length   %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
+                        (double)r[COLUMN_LENGTH_ERROR]));
   PetscCall(PetvesSay(comm, "  inclination (radians)         %.6f\n", (double)r[COLUMN_INCLINATION]));
   if (!PetscIsNanReal(r[COLUMN_FREQUENCY]))
     PetscCall(PetvesSay(comm, "  tank-treading frequency       %.6f\n", (double)r[COLUMN_FREQUENCY]));
@@ -114,7 +119,7 @@ static PetscErrorCode TablePrint(const Summary *s, const char reason[]) {
   PetscFunctionBeginUser;
   PetscCall(PetvesSay(comm, "\n%s at time %g after %" PetscInt_FMT " steps, %.2f s\n", reason, (double)r[COLUMN_TIME],
                       step, (double)s->seconds));
-  if (s->record->vesicles) PetscCall(TablePrintVesicles(comm, s->record, steps));
+  if (s->record->vesicles) PetscCall(TablePrintVesicles(comm, s, steps));
   PetscCall(PetvesSay(comm, "  max |div u|                   %.3e\n", (double)r[COLUMN_DIV]));
   PetscCall(PetvesSay(comm, "  fast solves a step            %.1f\n", (double)s->record->solves / (double)steps));
   PetscCall(PetvesSay(comm, "  seconds: fast solves %.2f, rest of the steps %.2f, output %.2f\n",
