@@ -29,7 +29,6 @@ Callback = Callable[["Simulation"], Any]
 GO_ON, STOP, FAILED = range(3)  # what a callback wants; the largest of all ranks' wishes counts
 
 _alive: dict[int, weakref.ref] = {}  # in the order of creation, which is the same on every rank
-_kept: dict[int, PETSc.Object] = {}  # an object a communicator: PETSc's copy of it is made once, by all ranks together
 
 
 class Simulation(State):
@@ -92,8 +91,6 @@ class Simulation(State):
         self._gathered: dict[str, np.ndarray] = {}
         self._comm = comm or PETSc.COMM_WORLD
         self._communicator = communicator(self._comm)
-        if self._communicator not in _kept:
-            _kept[self._communicator] = PETSc.Viewer().create(self._comm)
         self._flow = Flow(0) if flow is None else flow_function(flow, self._failed)
         if flow is not None:
             options["flow_type"] = "custom"
