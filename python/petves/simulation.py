@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import ctypes
+import gc
 import os
 import shutil
 import sys
@@ -358,6 +359,7 @@ class Simulation(State):
             self._free()
 
     def _free(self) -> None:
+        gc.collect()  # what Python has dropped, a KSP of an exception's frames, goes before, on every rank
         with one_thread:
             try:
                 if self._handle:

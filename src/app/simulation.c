@@ -216,9 +216,9 @@ static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failu
 PetscErrorCode SimulationBegin(Simulation s) {
   PetscFunctionBeginUser;
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeStart(s->scheme));
   s->begun = PETSC_TRUE;
   s->reason = "finished";
-  PetscCall(SchemeStart(s->scheme));
   PetscCall(OutputBegin(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
