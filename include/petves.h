@@ -85,8 +85,9 @@ PETSC_EXTERN PetscErrorCode SimulationGetTime(Simulation simulation, PetscInt *s
 
 /* SimulationGetState - borrowed vectors: velocity on the faces (the local part is the rank's rows of u, then of v) and
    pressure (both zero in unbounded fluid, which is not solved for on the grid: SimulationGetCellVelocity has it),
-   tension [M], markers [2M] and their velocity [2M], distributed by vesicle: each vesicle's part is on one rank. Any
-   may be NULL. Collective if velocity or pressure is asked for: they may have to be made first. */
+   tension [M] (of a membrane that stretches the tension over the stretch), markers [2M] and their velocity [2M],
+   distributed by vesicle: each vesicle's part is on one rank. Any may be NULL. Collective if velocity or pressure is
+   asked for: they may have to be made first. */
 PETSC_EXTERN PetscErrorCode SimulationGetState(Simulation simulation, Vec *velocity, Vec *pressure, Vec *tension,
                                                Vec *markers, Vec *marker_velocity);
 

@@ -32,10 +32,7 @@ PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, 
     const StatePart part = StatePartOf(s->scheme, &s->scheme->state, (StatePartName)k);
     if (!wanted[k]) continue;
     if (!s->gathered[k]) PetscCall(PetscMalloc1(part.n * part.each, &s->gathered[k]));
-    if (k == STATE_TENSION)
-      PetscCall(StateTension(s->scheme, &s->scheme->state, s->gathered[k]));
-    else
-      PetscCall(StateGather(&part, s->gathered[k]));
+    PetscCall(StateShow(s->scheme, (StatePartName)k, s->gathered[k]));
     *wanted[k] = s->gathered[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

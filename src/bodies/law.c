@@ -51,10 +51,11 @@ void LawPlace(MembraneLaw law, PetscReal a0, const PetscScalar X[]) {
     for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) {
       const PetscReal q = PetscSqr(law->tau[2 * k]) + PetscSqr(law->tau[2 * k + 1]);
       const Stretch s = StretchOf(m->law, q);
-      const PetscReal slope = m->modulus[v] * s.slope, viscous = m->viscosity * a0;
-      law->viscous[k] = MembraneStretches(m, v) ? viscous / (2 * slope * q + viscous) : 0;
-      law->c[k] = MembraneStretches(m, v) ? (1 - law->viscous[k]) * 0.5 * a0 * m->ds[v] / slope : 0;
-      law->excess[k] = MembraneStretches(m, v) ? 0.5 * s.sigma / s.slope - 0.5 * (q - 1) : 0;
+      const PetscReal viscous = m->viscosity * a0, resistance = 2 * m->modulus[v] * s.slope * q + viscous;
+      if (!MembraneStretches(m, v)) continue; /* zero */
+      law->viscous[k] = viscous / resistance;
+      law->c[k] = a0 * m->ds[v] * q / resistance;
+      law->excess[k] = 0.5 * s.sigma / s.slope - 0.5 * (q - 1);
     }
 }
 
@@ -85,15 +86,13 @@ void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], 
 /* d -= w Dm T/h^2 of membranes that stretch. */
 static PetscErrorCode LawTargetViscous(MembraneLaw law, Vec T, PetscScalar d[]) {
   const PetscScalar *t;
-  PetscScalar *rate;
+  PetscScalar *rate = law->membrane->work.memory;
   PetscFunctionBeginUser;
   if (!law->c || !T) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(law->n, &rate));
   PetscCall(VecGetArrayRead(T, &t));
   LawRows(law, t, NULL, rate);
   PetscCall(VecRestoreArrayRead(T, &t));
   for (PetscInt k = 0; k < law->n; k++) d[k] -= law->viscous[k] * rate[k];
-  PetscCall(PetscFree(rate));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,7 +11,7 @@
    mu, which resists the rate of the stretch (Kelvin and Voigt), the markers moving with U:
 
        sigma = sigma_q + slope (2/ds) tau.(e - e*) + mu (Dm U)/(q ds),
-       c = (1 - w) a0 ds/(2 slope),      w = mu a0/(2 slope q + mu a0).
+       c = a0 ds q/(2 slope q + mu a0),      w = mu a0/(2 slope q + mu a0).
 
    Where steps aim at the vesicles' first areas (docs/membrane.md, The area target), the part of a vesicle's equation of
    motion r = 0 along the gradient z of its area, |z| = 1 over all its markers, gives way to z.V = s,

@@ -71,9 +71,9 @@ PetscErrorCode MobilityPlace(Mobility m, PetscReal a0, Vec X) {
 PetscErrorCode MobilityAddLayers(Mobility m, Vec F, Vec G, PetscScalar U[]) {
   const PetscScalar *a;
   PetscFunctionBeginUser;
-  if (m->near && F) {
+  if (F) {
     PetscCall(VecGetArrayRead(F, &a));
-    PetscCall(NearFieldApply(m->near, -1, a, U));
+    if (m->near) PetscCall(NearFieldApply(m->near, -1, a, U));
     SeepageApply(m->bodies->membrane, m->markers->X, -1, a, U);
     PetscCall(VecRestoreArrayRead(F, &a));
   }

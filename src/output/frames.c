@@ -169,10 +169,7 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
   for (int name = 0; name < STATE_PARTS; name++) {
     const StatePart part = StatePartOf(s, &s->state, (StatePartName)name);
     if (!part.n) continue;
-    if (name == STATE_TENSION)
-      PetscCall(StateTension(s, &s->state, f->all));
-    else
-      PetscCall(StateGather(&part, f->all));
+    PetscCall(StateShow(s, (StatePartName)name, f->all));
     if (name == STATE_SOLIDS) ObstaclesOrder(o, f->all, f->all);
     AppendedSet(file, k++, f->all);
   }

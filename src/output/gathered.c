@@ -18,16 +18,17 @@ PetscErrorCode StateGather(const StatePart *p, PetscReal values[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StateTension(Scheme s, const State *q, PetscReal T[]) {
+PetscErrorCode StateShow(Scheme s, StatePartName name, PetscReal values[]) {
+  const StatePart part = StatePartOf(s, &s->state, name);
   const Membrane m = s->membrane;
   PetscReal *X, *tau;
   PetscFunctionBeginUser;
-  PetscCall(LayoutGatherVec(m->layout, q->sigma, T));
-  if (m->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StateGather(&part, values));
+  if (name != STATE_TENSION || m->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(2 * m->layout->M, &X, 2 * m->layout->M, &tau));
-  PetscCall(LayoutGatherVec(m->layout, q->X, X));
+  PetscCall(LayoutGatherVec(m->layout, s->state.X, X));
   MembraneTangents(m, 0, m->layout->bodies, X, tau);
-  for (PetscInt k = 0; k < m->layout->M; k++) T[k] *= PetscHypotReal(tau[2 * k], tau[2 * k + 1]);
+  for (PetscInt k = 0; k < m->layout->M; k++) values[k] *= PetscHypotReal(tau[2 * k], tau[2 * k + 1]);
   PetscCall(PetscFree2(X, tau));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

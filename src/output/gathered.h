@@ -19,9 +19,9 @@ PETSC_EXTERN StatePart StatePartOf(Scheme scheme, const State *state, StatePartN
 PETSC_EXTERN PetscErrorCode StateGather(const StatePart *part, PetscReal values[]);
 PETSC_EXTERN PetscErrorCode StateScatter(const StatePart *part, const PetscReal values[]);
 
-/* StateTension - the tension T[M] of all vesicles on every rank; STATE_TENSION is the law's unknown, the tension over
-   the stretch (bodies/law.h). Collective. */
-PETSC_EXTERN PetscErrorCode StateTension(Scheme scheme, const State *state, PetscReal T[]);
+/* StateShow - StateGather of the scheme's state for frames and callers, who see the tension where STATE_TENSION is the
+   law's unknown, the tension over the stretch (bodies/law.h). Collective. */
+PETSC_EXTERN PetscErrorCode StateShow(Scheme scheme, StatePartName name, PetscReal values[]);
 
 /* GatherRows - all[rows][each] on rank 0 of every rank's rows own[][each] of a field of the grid. ScatterRows - every
    rank gets its rows of rank 0's. Collective. */

@@ -186,7 +186,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
     {!stretches && m->viscosity > 0,
      "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
     {m->osmotic.n != 2,
-     "-membrane_osmotic: %.0f numbers given; allowed: two, inside and outside", {m->osmotic.n}},
+     "-membrane_osmotic {-membrane_osmotic}: not two numbers; allowed: inside, outside"},
     {m->permeability == 0 && (m->osmotic.v[0] != 0 || m->osmotic.v[1] != 0),
      "-membrane_osmotic: -membrane_permeability {-membrane_permeability} lets no water pass; allowed: with a permeability above 0"},
     {m->permeability > 0 && (paper || SceneHasContrast(s)),

@@ -162,6 +162,18 @@ def test_water_inflates_a_circle(tmp_path):
     assert error[3, 10] < 2e-5 and error[3, 20] < error[3, 10] / 6
 
 
+def test_water_passes_without_near_field(tmp_path):
+    """What the pressure drives back does not hang on the near field: the same area in a box of four walls."""
+    circle = f"-domain_box -3,3,-3,3 -domain_cells 48,48 -fluid_inertia none -vesicle_semi_axes 1,1 {stretched('hooke', 2.0)}"
+    water = "-membrane_permeability 0.3 -membrane_osmotic 3,1.2 -time_step 0.05 -time_end 0.5"
+    plain = "-coupling_near_field none -coupling_box_part false"
+    areas = [
+        run_petves(tmp_path / str(k), f"{circle} {water} {more}").series["area"][-1]
+        for k, more in enumerate(("", plain))
+    ]
+    assert areas[0] == pytest.approx(areas[1], rel=1e-3) and areas[0] > 1.3 * math.pi
+
+
 def test_permeable_vesicles(tmp_path):
     """At rest they swell into circles, whose tension is 3/2 - 1/2 of c_b/R0^2 below zero; in shear V and angle settle."""
     scene = f"{ELLIPSE} -vesicle_bending 1"

@@ -14,6 +14,7 @@ KINDS = {
     "channel": f"{SHEAR} -domain_bc_x periodic",
     "contrast": f"{SHEAR} -domain_bc_x periodic -vesicle_viscosity_ratio 5",
     "heavy": f"{SHEAR} -fluid_gravity 0,-1 -vesicle_density_difference 1",
+    "capsule": f"{SHEAR} -membrane_law hooke -membrane_stretching 10 -membrane_viscosity 1",
     "posts": f"{SHEAR} {POST} -domain_bc_x periodic",
     "turning": f"{SHEAR} {POST} -obstacle_moving -obstacle_rotation 1",
     "posts with inertia": f"{SHEAR} {POST} -domain_bc_x periodic -fluid_inertia unsteady",
