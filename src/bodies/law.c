@@ -47,6 +47,7 @@ static PetscInt LawOffset(MembraneLaw law, PetscInt v) {
 void LawPlace(MembraneLaw law, PetscReal a0, const PetscScalar X[]) {
   const Membrane m = law->membrane;
   MembraneTangents(m, law->vesicle, law->end, X, law->tau);
+  law->a0 = a0;
   for (PetscInt v = law->vesicle; v < law->end && law->c; v++)
     for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) {
       const PetscReal q = PetscSqr(law->tau[2 * k]) + PetscSqr(law->tau[2 * k + 1]);
@@ -105,7 +106,7 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) 
   PetscCall(VecGetArray(g, &d));
   for (PetscInt v = law->vesicle; v < law->end; v++) {
     const PetscInt at = LawOffset(law, v);
-    const PetscReal ds = m->ds[v];
+    const PetscReal ds = m->ds[v], rate = MembraneStretches(m, v) ? law->a0 : a0;
     MembraneEdges(m, v, X + 2 * at, hat);
     for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++) {
       PetscReal star2 = 0, gap = 0;
@@ -114,8 +115,8 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) 
         star2 += e * e;
         gap += e * (hat[2 * k + c] - e);
       }
-      const PetscReal aim = a0 * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
-      d[at + k] += law->c ? (1 - law->viscous[at + k]) * (aim - a0 * ds * law->excess[at + k] / law->h2) : aim;
+      const PetscReal aim = rate * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
+      d[at + k] += law->c ? (1 - law->viscous[at + k]) * (aim - rate * ds * law->excess[at + k] / law->h2) : aim;
     }
   }
   PetscCall(LawTargetViscous(law, T, d));
@@ -127,8 +128,10 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) 
 void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]) {
   const Membrane m = law->membrane;
   for (PetscInt v = law->vesicle; v < law->end; v++) {
-    const PetscReal factor = law->h2 / m->ds[v] * weight;
-    for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) d[k] = inverse ? d[k] / factor : d[k] * factor;
+    for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) {
+      const PetscReal factor = law->h2 / m->ds[v] * weight / (1 + (law->c ? weight * law->c[k] : 0));
+      d[k] = inverse ? d[k] / factor : d[k] * factor;
+    }
   }
 }
 
@@ -142,9 +145,9 @@ PetscErrorCode LawLargest(MembraneLaw law, Vec V, Vec sigma, Vec g, PetscReal *l
   PetscCall(VecGetArrayRead(g, &aim));
   PetscCall(PetscMalloc1(law->n, &d));
   LawRows(law, v, s, d);
-  for (PetscInt k = 0; k < law->n; k++) d[k] -= aim[k];
-  LawScale(law, 1, PETSC_FALSE, d);
-  for (PetscInt k = 0; k < law->n; k++) own = PetscMax(own, PetscAbsReal(d[k]));
+  for (PetscInt w = law->vesicle; w < law->end; w++)
+    for (PetscInt k = LawOffset(law, w); k < LawOffset(law, w + 1); k++)
+      own = PetscMax(own, PetscAbsReal(d[k] - aim[k]) * law->h2 / law->membrane->ds[w]);
   PetscCall(PetscFree(d));
   PetscCall(VecRestoreArrayRead(g, &aim));
   PetscCall(VecRestoreArrayRead(sigma, &s));

@@ -31,6 +31,7 @@ struct _p_MembraneLaw {
   PetscReal h2;      /* h^2 */
   PetscInt vesicle, end;
   PetscInt first, n;  /* its markers: first .. first + n - 1 */
+  PetscReal a0;       /* of the step */
   PetscReal *tau;     /* [2n] tangents where it is placed */
   PetscReal *c;       /* [n] c; NULL where no membrane stretches */
   PetscReal *viscous; /* [n] w; NULL likewise */
@@ -68,7 +69,8 @@ PETSC_EXTERN void LawRows(MembraneLaw law, const PetscScalar V[], const PetscSca
 
        (1 - w) a0 [-ds^2 sigma_q/(2 slope) - e*.(ehat - e*)]/(ds h^2) - w Dm T/h^2,
 
-   T the velocity of the labels, which markers that pass along the membrane have besides V; NULL: 0.
+   T the velocity of the labels, which markers that pass along the membrane have besides V; NULL: 0. Where c = 0 a0 may
+   be another one than the step's: 0 leaves the edges as they are.
 
    LawTargetAreas - z, and s by which the new markers have the first areas A0:
 
@@ -80,7 +82,8 @@ PETSC_EXTERN PetscErrorCode LawTargetAreas(MembraneLaw law, PetscReal a0, Vec Xs
    for a product with the operator. Nothing without an area target. */
 PETSC_EXTERN void LawReplaceAreas(MembraneLaw law, PetscBool aimed, const PetscScalar V[], PetscScalar y[]);
 
-/* LawScale - multiply the residuals d of the rows by weight h^2/ds, or (inverse) divide. LawLargest - of a law of the
+/* LawScale - multiply the residuals d of the rows by weight h^2/(ds (1 + weight c)), or (inverse) divide: they are a
+   velocity, or where c is large a tension, times a weight of the size of a viscosity. LawLargest - of a law of the
    own vesicles, the largest residual of the rows for V and sigma, times h^2/ds: a surface divergence (1/time).
    LawLargest is collective. */
 PETSC_EXTERN void LawScale(MembraneLaw law, PetscReal weight, PetscBool inverse, PetscScalar d[]);

@@ -35,6 +35,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, bending[v]);
   m->derivative = (DerivativeType)given->derivative;
   m->law = (LawType)given->law;
+  m->moment = (MomentType)given->moment;
   m->viscosity = given->viscosity;
   m->permeability = given->permeability;
   for (int k = 0; k < 2; k++) m->osmotic[k] = given->osmotic.n == 2 ? given->osmotic.v[k] : 0;
@@ -46,15 +47,17 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   if (given->memory) PetscCall(PetscMalloc1(layout->M, &m->memory));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
+    const PetscReal *rest = (given->rest_X ? given->rest_X : X) + 2 * layout->start[v];
     Measures measures;
     PetscCall(SpectralCreate(n, &m->spectral[v]));
-    m->arc[v] = ArcLength(m, v, X + 2 * layout->start[v]);
     MembraneMeasure(m, v, X + 2 * layout->start[v], &measures);
     m->A0[v] = measures.area;
+    MembraneMeasure(m, v, rest, &measures);
+    m->arc[v] = ArcLength(m, v, rest);
     m->L0[v] = measures.length;
     m->ds[v] = measures.length / n;
     m->modulus[v] = given->modulus[v];
-    if (m->memory) MembraneCurvature(m, v, X + 2 * layout->start[v], m->memory + layout->start[v]);
+    if (m->memory) MembraneCurvature(m, v, rest, m->memory + layout->start[v]);
     m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

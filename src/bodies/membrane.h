@@ -21,11 +21,12 @@ typedef struct {
 typedef struct _p_Membrane *Membrane;
 struct _p_Membrane {
   Layout layout;          /* borrowed; a body is a vesicle */
-  PetscReal *ds;          /* [vesicles] fixed material spacing: mean initial edge (length) */
-  PetscReal *A0, *L0;     /* [vesicles] initial area and length */
+  PetscReal *ds;          /* [vesicles] fixed material spacing: mean edge at rest (length) */
+  PetscReal *A0, *L0;     /* [vesicles] initial area, length at rest */
   PetscReal bending;      /* the largest c_b */
   PetscReal *part;        /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
   LawType law;            /* of the membranes that stretch */
+  MomentType moment;      /* how they bend */
   PetscReal permeability; /* P (time/length); 0: none */
   PetscReal osmotic[2];   /* pressures inside and outside (length^2/time^2) */
   PetscReal viscosity;    /* of membranes that stretch (length^3/time) */
@@ -33,11 +34,11 @@ struct _p_Membrane {
   PetscReal *memory;      /* [M] curvature that bending prefers (1/length); NULL: none */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
-  PetscReal *arc;     /* [vesicles] initial arc length, spectrally accurate */
+  PetscReal *arc;     /* [vesicles] arc length at rest, spectrally accurate */
   MembraneWork work;
 };
 
-/* MembraneCreate - membranes at rest with the markers X[2M] of all vesicles, as the scene gives them. Not collective.
+/* MembraneCreate - membranes with the first markers X[2M] of all vesicles, as the scene gives them. Not collective.
    MembraneStretches - whether a vesicle's membrane stretches. */
 PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given,
                                            Membrane *membrane);

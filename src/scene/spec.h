@@ -5,6 +5,7 @@
 
 typedef enum { DERIVATIVE_FD, DERIVATIVE_BENDING, DERIVATIVE_SPECTRAL } DerivativeType;
 typedef enum { LAW_INEXTENSIBLE, LAW_HOOKE, LAW_GREEN, LAW_NEO_HOOKEAN } LawType;
+typedef enum { MOMENT_QUADRATIC, MOMENT_ANGLE, MOMENT_HELFRICH } MomentType;
 typedef enum { NEAR_EXACT, NEAR_NONE } NearFieldType;
 #define NEAR_LEAST_SPACING 0.3 /* ds/h with the exact near field, in which neither kernel nor grid is felt */
 #define SCENE_LEAST_GAP 0.3    /* marker spacings between obstacles, down to which their forces are right */
@@ -43,18 +44,20 @@ typedef struct {
 } SceneVesicles;
 
 typedef struct {
-  RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
-  PetscReal bending;        /* the largest c_b */
-  PetscReal *each;          /* [vesicles] c_b */
-  RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
-  RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
-  PetscReal *modulus;       /* [vesicles] E_s */
-  PetscReal viscosity;      /* of membranes that stretch */
-  PetscReal permeability;   /* for water; 0: none */
-  RealList osmotic;         /* osmotic pressures inside and outside */
-  PetscInt law;             /* LawType, of all membranes that stretch */
-  PetscBool memory;         /* bending prefers the initial shape's curvature */
-  PetscInt derivative;      /* DerivativeType */
+  RealList stiffness;            /* c_b; one entry for all, or one a vesicle or kind */
+  PetscReal bending;             /* the largest c_b */
+  PetscReal *each;               /* [vesicles] c_b */
+  RealList viscosity_ratio;      /* inside over outside; one for all, or one a vesicle or kind */
+  RealList stretching;           /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
+  PetscReal *modulus;            /* [vesicles] E_s */
+  PetscReal viscosity;           /* of membranes that stretch */
+  PetscReal permeability;        /* for water; 0: none */
+  RealList osmotic;              /* osmotic pressures inside and outside */
+  PetscInt law, moment;          /* LawType and MomentType of all membranes that stretch */
+  PetscBool memory;              /* bending prefers the rest shape's curvature */
+  char rest[PETSC_MAX_PATH_LEN]; /* initial, circle, or a curve file */
+  PetscReal *rest_X;             /* [2 shape.start[vesicles]] markers of the rest shapes, anywhere; NULL: initial */
+  PetscInt derivative;           /* DerivativeType */
 } SceneMembrane;
 
 /* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */

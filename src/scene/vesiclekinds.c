@@ -81,15 +81,48 @@ static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscBool s
 }
 /* clang-format on */
 
-PetscErrorCode KindFit(Scene scene, Kind *kind) {
-  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+/* M markers X[2M], to be freed, on a curve of this length and area. */
+static PetscErrorCode KindFitCurve(const Curve *curve, PetscReal length, PetscReal area, PetscBool spectral, PetscInt M,
+                                   PetscReal **X) {
   PetscReal left;
   PetscFunctionBeginUser;
-  PetscCall(KindMarkerCount(scene, kind, spectral, &kind->M));
-  PetscCall(PetscMalloc1(2 * kind->M, &kind->X));
-  PetscCall(CurveEqualEdges(&kind->curve, NULL, spectral ? PETSC_FALSE : PETSC_TRUE, kind->M, kind->X));
+  PetscCall(PetscMalloc1(2 * M, X));
+  PetscCall(CurveEqualEdges(curve, NULL, spectral ? PETSC_FALSE : PETSC_TRUE, M, *X));
   /* what M markers sample of a curve with sharper tips than they resolve has neither its length nor its area */
-  if (spectral) PetscCall(CurveFit(kind->M, spectral, kind->length, kind->area, kind->X, MAX_NEWTON, &left));
+  if (spectral) PetscCall(CurveFit(M, spectral, length, area, *X, MAX_NEWTON, &left));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define SAME_LENGTH 1e-6 /* relative, of a membrane that does not stretch and its shape at rest */
+
+/* The shape at rest, where it is another one than the first. */
+static PetscErrorCode KindFitRest(Scene scene, PetscBool spectral, Kind *kind) {
+  const char *const file = scene->membrane.rest;
+  const PetscReal R0 = kind->length / (2 * PETSC_PI);
+  Curve circle = {.axes = {R0, R0}}, *curve = &circle;
+  PetscInt curves = 1;
+  PetscFunctionBeginUser;
+  if (!strcmp(file, "initial")) PetscFunctionReturn(PETSC_SUCCESS);
+  if (strcmp(file, "circle"))
+    PetscCall(CurvesFromFile(scene->comm, "-membrane_rest", file, NULL, &curves, &curve, NULL));
+  const PetscReal length = CurveLength(curve);
+  PetvesCheck(curves == 1, scene->comm, "-membrane_rest %s: %" PetscInt_FMT " curves; allowed: one", file, curves);
+  PetvesCheck(kind->stretching > 0 || PetscAbsReal(length / kind->length - 1) < SAME_LENGTH, scene->comm,
+              "-membrane_rest %s: the curve is %g long, a membrane that does not stretch %g; allowed: the same length",
+              file, (double)length, (double)kind->length);
+  PetscCall(KindFitCurve(curve, length, CurveArea(curve), spectral, kind->M, &kind->rest));
+  if (curve == &circle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CurveDestroy(curve));
+  PetscCall(PetscFree(curve));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode KindFit(Scene scene, Kind *kind) {
+  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(KindMarkerCount(scene, kind, spectral, &kind->M));
+  PetscCall(KindFitCurve(&kind->curve, kind->length, kind->area, spectral, kind->M, &kind->X));
+  PetscCall(KindFitRest(scene, spectral, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,6 +313,7 @@ PetscErrorCode KindsDestroy(Kinds *all) {
   for (PetscInt k = 0; k < all->kinds; k++) {
     PetscCall(CurveDestroy(&all->kind[k].curve));
     PetscCall(PetscFree(all->kind[k].X));
+    PetscCall(PetscFree(all->kind[k].rest));
   }
   PetscCall(PetscFree(all->kind));
   PetscCall(PetscFree(all->of));

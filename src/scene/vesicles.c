@@ -149,6 +149,9 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   for (PetscInt v = 0; v < kinds.vesicles; v++) {
     const Kind *kind = &kinds.kind[kinds.of[v]];
     KindPlace(kind, &pose[v], kind->M, kind->X, shape->X + 2 * shape->start[v]);
+    if (kind->rest && !scene->membrane.rest_X)
+      PetscCall(PetscMalloc1(2 * shape->start[kinds.vesicles], &scene->membrane.rest_X));
+    if (kind->rest) PetscCall(PetscArraycpy(scene->membrane.rest_X + 2 * shape->start[v], kind->rest, 2 * kind->M));
     scene->membrane.each[v] = kind->bending;
     scene->membrane.modulus[v] = kind->stretching;
   }
@@ -162,6 +165,7 @@ PetscErrorCode SceneDropShape(Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(ShapeDestroy(&scene->shape));
   PetscCall(PetscFree(scene->vesicles.kind));
+  PetscCall(PetscFree(scene->membrane.rest_X));
   PetscCall(PetscFree(scene->membrane.each));
   PetscCall(PetscFree(scene->membrane.modulus));
   PetscFunctionReturn(PETSC_SUCCESS);

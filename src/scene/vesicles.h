@@ -9,8 +9,9 @@ typedef struct {
   PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
   PetscReal given[4]; /* area and reduced area, or both semi-axes; bending stiffness, E_s: not of a file's curve */
   PetscReal length, area, bending, stretching;
-  PetscInt M;   /* markers, 0 before KindFit */
-  PetscReal *X; /* [2M] */
+  PetscInt M;      /* markers, 0 before KindFit */
+  PetscReal *X;    /* [2M] */
+  PetscReal *rest; /* [2M] of the shape at rest; NULL: X */
 } Kind;
 
 typedef struct {
@@ -24,8 +25,8 @@ typedef struct {
    is one. The rate or peak velocity of the flow follows from -flow_chi (chi c_b/(nu R0^3)), -flow_ca (Ca c_b/(nu R0^2))
    or -flow_ca_stretching (Ca E_s/(nu R0)), R0 of the largest vesicle and the largest modulus. What this leaves in the
    scene SceneDropShape takes.
-   KindFit - the markers of a kind: their number, and equal edges. Collective; stop with the user's message on a bad
-   file, list, number of markers, spacing, or a flow without vesicles that bend. */
+   KindFit - the markers of a kind: their number, and equal edges, of the shape at rest too. Collective; stop with the
+   user's message on a bad file, list, number of markers, spacing, or a flow without vesicles that bend. */
 PETSC_EXTERN PetscErrorCode KindsCreate(Draft scene, Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);

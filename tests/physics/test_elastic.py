@@ -128,6 +128,46 @@ def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
     assert tension == pytest.approx(10 * (stretch - 1), abs=2e-4)
 
 
+@pytest.mark.parametrize("moment", CAPSULES["moments"])
+def test_bending_of_stretched_capsules(tmp_path, moment):
+    """Ca = .1: D, angle, frequency and length of two boundary integrals, with kappa0 = 1 and without; quadratic bending is another material."""
+    bending, memory, *targets = CAPSULES["moments"][moment]
+    options = (
+        f"-vesicle_bending {bending} -membrane_memory {str(memory).lower()} -membrane_moment {moment} -time_end 24"
+    )
+    run = run_petves(tmp_path, f"{CIRCLE} {stretched('hooke', 10.0)} {options}")
+    found = [deformed(run), angle(run), run.series["frequency"][-1] / (2 * math.pi)]
+    assert found == pytest.approx(targets, abs=3e-6)
+
+
+@pytest.mark.parametrize("moment", ["angle", "helfrich"])
+def test_bending_of_stretched_membranes_never_gains_energy(tmp_path, moment):
+    for modulus, step in ((100, 0.01), (100, 10), (1e4, 1000)):
+        options = f"{ELLIPSE} {stretched('hooke', float(modulus))} -membrane_moment {moment} -time_step {step} -time_end {40 * step}"
+        series = run_petves(tmp_path / f"{modulus}.{step}", options).series
+        energy = series["energy_bending"] + series["energy_stretching"]
+        assert np.all(np.diff(energy) < 1e-8 * energy[0]) and energy[-1] < 0.9 * energy[0]
+
+
+def test_shape_at_rest_of_a_file(tmp_path):
+    """A circle at rest of 0.8 of the radius: tension E_s/4 and its energy from frame 0 on. An ellipse that is at rest as a
+    circle of its area becomes it, by steps of any size, without a gain of energy after the first step."""
+    round_ = 2 * math.pi * np.arange(200) / 200
+    for name, radius in (("small", 0.8), ("one", 1.0)):
+        np.savetxt(tmp_path / f"{name}.txt", radius * np.c_[np.cos(round_), np.sin(round_)])
+    small = f"{FREE} -vesicle_semi_axes 1,1 -vesicle_bending 0.01 {stretched('hooke', 10.0)} -membrane_rest {tmp_path}/small.txt"
+    run = run_petves(tmp_path / "small", f"{small} -time_step 0.1 -time_end 1")
+    assert run.saved("vesicle/tension", "run.h5") == pytest.approx(np.full((2, 45), 2.5), abs=1e-6)
+    assert run.series["energy_stretching"] == pytest.approx(np.full(11, 0.5 * math.pi), rel=1e-7)
+    one = f"{FREE} -vesicle_semi_axes 1.25,.8 -vesicle_bending 0.1 -membrane_memory true -membrane_rest {tmp_path}/one.txt"
+    for modulus, step in ((1.0, 1.0), (100.0, 1.0), (1e4, 1.0), (100.0, 100.0)):
+        options = f"{one} {stretched('hooke', modulus)} -time_step {step} -time_end {40 * step}"
+        series = run_petves(tmp_path / f"{modulus}.{step}", options).series
+        energy = series["energy_bending"] + series["energy_stretching"]
+        assert np.all(np.diff(energy) < 1e-8 * energy[0]) and energy[-1] < 2e-5 * energy[0]
+        assert series["length"][-1] == pytest.approx(2 * math.pi, rel=2e-6)
+
+
 @pytest.mark.parametrize("step", [0.02, 1, 100])
 def test_memory_keeps_the_shape(tmp_path, step):
     """An ellipse that remembers its curvature stays, by steps of any size, to what its markers resolve; no step gains energy."""
@@ -135,6 +175,19 @@ def test_memory_keeps_the_shape(tmp_path, step):
     run = run_petves(tmp_path, options)
     assert deformed(run) == pytest.approx(0.46881, abs=5e-5)
     assert np.diff(run.series["energy_bending"]).max() < 1e-9
+
+
+def test_memory_turns_a_shape_to_its_rest(tmp_path):
+    """An ellipse whose memory is that of the ellipse turned by a third of its markers finds the shape again, without a gain of energy."""
+    round_ = 2 * math.pi * (np.arange(200) / 200 + 1 / 3)
+    np.savetxt(tmp_path / "rest.txt", np.c_[np.cos(round_), 0.4 * np.sin(round_)])
+    ellipse = (
+        f"{FREE} -vesicle_semi_axes 1,.4 -vesicle_bending 0.1 -membrane_memory true -membrane_rest {tmp_path}/rest.txt"
+    )
+    for step in (0.02, 1):
+        series = run_petves(tmp_path / str(step), f"{ellipse} -time_step {step} -time_end 60").series
+        energy = series["energy_bending"]
+        assert np.diff(energy).max() < 1e-4 * energy[0] and energy[-1] < 1e-3 * energy[0]
 
 
 def test_memory_swings_and_tumbles(tmp_path):

@@ -86,7 +86,9 @@ def test_help_of_a_word_that_no_name_has(word, found):
 @pytest.mark.parametrize("words", [["help"], ["-help"], ["help", "plot"], ["-help", "plot"]])
 def test_help_is_a_word_too(words):
     done = mpirun([PETVES, *words], 1)
-    assert done.returncode == 0 and done.stdout.startswith("usage: petves plot" if "plot" in words else "petves: vesicles and capsules")
+    assert done.returncode == 0 and done.stdout.startswith(
+        "usage: petves plot" if "plot" in words else "petves: vesicles and capsules"
+    )
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -1,0 +1,236 @@
+#include "bodies/moment.h"
+#include "bodies/bending.h"
+
+#define TIMES 2 /* points of the energy for each marker */
+
+/* The change of bending at a point of the membrane, theta - kappa0 lambda^p, and its derivatives. */
+typedef struct {
+  PetscReal change, weight;   /* the energy of a length at rest is c_b/2 weight change^2, weight = lambda^-p */
+  PetscReal by_a[2], by_b[2]; /* d(change) */
+  PetscReal weight_by_a[2];   /* d(weight)/weight */
+} MomentPoint;
+
+typedef struct {
+  Membrane membrane;  /* borrowed */
+  MomentPoint *point; /* [TIMES n] of the own vesicles, where the force is placed */
+  PetscScalar *at;    /* [2n] grad E_B - N X* at the own markers */
+} Moment;
+
+static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a[2], const PetscReal b[2]) {
+  const PetscReal q = PetscSqr(a[0]) + PetscSqr(a[1]), lambda = PetscSqrtReal(q);
+  const PetscReal theta = (a[0] * b[1] - a[1] * b[0]) / q;
+  const int p = type == MOMENT_HELFRICH;
+  MomentPoint o = {.change = theta - (p ? kappa0 * lambda : kappa0), .weight = p ? 1 / lambda : 1};
+  for (int c = 0; c < 2; c++) {
+    const PetscReal sign = c ? -1 : 1;
+    o.by_a[c] = (sign * b[1 - c] - (2 * theta + p * kappa0 * lambda) * a[c]) / q;
+    o.by_b[c] = -sign * a[1 - c] / q;
+    o.weight_by_a[c] = -p * a[c] / q;
+  }
+  return o;
+}
+
+/* X_s and X_ss of one vesicle's X[2n] at the points: a[2 TIMES n], b[2 TIMES n]. */
+static void MomentSlopes(Membrane m, PetscInt v, const PetscScalar X[], PetscReal a[], PetscReal b[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *own = m->work.bending;
+  for (int power = 1; power <= 2; power++) {
+    (void)PetscArrayzero(own, 2 * n);
+    SpectralDerivative(m->spectral[v], power, PetscPowRealInt(n / m->arc[v], power), X, own);
+    TrigonometricPoints(n, own, TIMES, power == 1 ? a : b);
+  }
+}
+
+/* G += alpha times the transpose of MomentSlopes for the c_b ds of a point; the first derivative is antisymmetric. */
+static void MomentSlopesTranspose(Membrane m, PetscInt v, PetscReal alpha, const PetscReal a[], const PetscReal b[],
+                                  PetscScalar G[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  const PetscReal size = alpha * m->bending * m->part[v] * m->ds[v] / TIMES;
+  PetscScalar *own = m->work.bending;
+  for (int power = 1; power <= 2; power++) {
+    TrigonometricPointsTranspose(n, power == 1 ? a : b, TIMES, own);
+    SpectralDerivative(m->spectral[v], power, (power == 1 ? -size : size) * PetscPowRealInt(n / m->arc[v], power), own,
+                       G);
+  }
+}
+
+/* The points of one vesicle's markers X[2n]. */
+static PetscErrorCode MomentPoints(Membrane m, PetscInt v, const PetscScalar X[], MomentPoint point[]) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscReal *a, *b, *kappa0, *own;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc4(2 * n, &own, 2 * TIMES * n, &a, 2 * TIMES * n, &b, 2 * TIMES * n, &kappa0));
+  for (PetscInt k = 0; k < n && m->memory; k++) own[2 * k] = m->memory[m->layout->start[v] + k];
+  TrigonometricPoints(n, own, TIMES, kappa0);
+  MomentSlopes(m, v, X, a, b);
+  for (PetscInt q = 0; q < TIMES * n; q++) point[q] = MomentOf(m->moment, kappa0[2 * q], a + 2 * q, b + 2 * q);
+  PetscCall(PetscFree4(own, a, b, kappa0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* G += alpha grad E_B. */
+static PetscErrorCode MomentGradient(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
+                                     PetscScalar G[]) {
+  const PetscInt fine = TIMES * LayoutCount(m->layout, v);
+  PetscReal *a, *b;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(2 * fine, &a, 2 * fine, &b));
+  for (PetscInt q = 0; q < 2 * fine; q++) {
+    const MomentPoint *o = &point[q / 2];
+    const PetscReal moment = o->weight * o->change;
+    a[q] = moment * (o->by_a[q % 2] + 0.5 * o->change * o->weight_by_a[q % 2]);
+    b[q] = moment * o->by_b[q % 2];
+  }
+  MomentSlopesTranspose(m, v, alpha, a, b, G);
+  PetscCall(PetscFree2(a, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* G += alpha N V. */
+static PetscErrorCode MomentAddNewton(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
+                                      const PetscScalar V[], PetscScalar G[]) {
+  const PetscInt fine = TIMES * LayoutCount(m->layout, v);
+  PetscReal *a, *b;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(2 * fine, &a, 2 * fine, &b));
+  MomentSlopes(m, v, V, a, b);
+  for (PetscInt q = 0; q < fine; q++) {
+    const MomentPoint *o = &point[q];
+    PetscReal change = 0;
+    for (int c = 0; c < 2; c++) change += o->by_a[c] * a[2 * q + c] + o->by_b[c] * b[2 * q + c];
+    for (int c = 0; c < 2; c++) {
+      a[2 * q + c] = o->weight * change * o->by_a[c];
+      b[2 * q + c] = o->weight * change * o->by_b[c];
+    }
+  }
+  MomentSlopesTranspose(m, v, alpha, a, b, G);
+  PetscCall(PetscFree2(a, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MomentEnergy(Membrane m, PetscInt v, const PetscScalar X[], PetscReal *energy, PetscScalar G[]) {
+  const PetscInt fine = TIMES * LayoutCount(m->layout, v);
+  PetscReal sum = 0;
+  MomentPoint *point;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(fine, &point));
+  PetscCall(MomentPoints(m, v, X, point));
+  for (PetscInt q = 0; q < fine; q++) sum += 0.5 * point[q].weight * PetscSqr(point[q].change);
+  *energy = m->bending * m->part[v] * m->ds[v] / TIMES * sum;
+  if (G) PetscCall(MomentGradient(m, v, 1, point, G));
+  PetscCall(PetscFree(point));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MomentPlace(void *context, PetscReal t, const PetscReal X[]) {
+  const Moment *o = (const Moment *)context;
+  const Membrane m = o->membrane;
+  const Layout l = m->layout;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(o->at, 2 * l->n));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscReal *own = X + 2 * l->start[v];
+    const PetscInt at = LayoutOffset(l, v);
+    MomentPoint *point = o->point + TIMES * at;
+    PetscCall(MomentPoints(m, v, own, point));
+    PetscCall(MomentGradient(m, v, 1, point, o->at + 2 * at));
+    PetscCall(MomentAddNewton(m, v, -1, point, own, o->at + 2 * at));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MomentRate(void *context, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
+  const Moment *o = (const Moment *)context;
+  const Membrane m = o->membrane;
+  const Layout l = m->layout;
+  PetscFunctionBeginUser;
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = LayoutOffset(l, v);
+    PetscCall(MomentAddNewton(m, v, alpha, o->point + TIMES * at, V + 2 * at, F + 2 * at));
+    MembraneVesicleBending(m, v, -alpha * m->bending, V + 2 * at, F + 2 * at);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MomentKnown(void *context, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
+  const Moment *o = (const Moment *)context;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < 2 * o->membrane->layout->n; k++) F[k] += alpha * o->at[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, PetscReal K[]) {
+  const Moment *o = (const Moment *)context;
+  const Membrane m = o->membrane;
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscReal *unit;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * n, &unit));
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    unit[k] = 1;
+    PetscCall(MomentAddNewton(m, v, alpha, o->point + TIMES * LayoutOffset(m->layout, v), unit, K + 2 * n * k));
+    MembraneVesicleBending(m, v, -alpha * m->bending, unit, K + 2 * n * k);
+    unit[k] = 0;
+  }
+  PetscCall(PetscFree(unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MomentLaw(void *context, PetscReal t, const PetscScalar X[], PetscScalar F[]) {
+  const Membrane m = ((const Moment *)context)->membrane;
+  const Layout l = m->layout;
+  PetscScalar *G;
+  PetscReal energy;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * l->n, &G));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(l, v);
+    PetscCall(MomentEnergy(m, v, X + at, &energy, G + at));
+    MembraneVesicleBending(m, v, -m->bending, X + at, G + at);
+  }
+  for (PetscInt k = 0; k < 2 * l->n; k++) F[k] -= G[k];
+  PetscCall(PetscFree(G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What E_B is above the quadratic energy, which is in the same column. */
+static PetscErrorCode MomentAddEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+  const Membrane m = ((const Moment *)context)->membrane;
+  PetscFunctionBeginUser;
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscScalar *own = X + 2 * LayoutOffset(m->layout, v);
+    PetscReal energy;
+    PetscCall(MomentEnergy(m, v, own, &energy, NULL));
+    E[v] += energy - MembraneBendingEnergy(m, v, own);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MomentDestroy(void *context) {
+  Moment *o = (Moment *)context;
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(o->point, o->at));
+  PetscCall(PetscFree(context));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *force) {
+  const Membrane m = bodies->membrane;
+  Moment *o;
+  PetscFunctionBeginUser;
+  if (m->moment == MOMENT_QUADRATIC || m->bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&o));
+  o->membrane = m;
+  PetscCall(PetscCalloc2(TIMES * m->layout->n, &o->point, 2 * m->layout->n, &o->at));
+  *force = (Force){.name = "bending",
+                   .reach = FORCE_WITHIN,
+                   .context = o,
+                   .place = MomentPlace,
+                   .rate = MomentRate,
+                   .known = MomentKnown,
+                   .dense = MomentDense,
+                   .law = MomentLaw,
+                   .energy = MomentAddEnergy,
+                   .destroy = MomentDestroy};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
