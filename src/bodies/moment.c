@@ -68,38 +68,20 @@ static PetscErrorCode MomentPoints(Membrane m, PetscInt v, const PetscScalar X[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* G += alpha grad E_B. */
-static PetscErrorCode MomentGradient(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
-                                     PetscScalar G[]) {
+/* G += alpha grad E_B, or with a motion V[2n] that is not NULL alpha N V. */
+static PetscErrorCode MomentAdd(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
+                                const PetscScalar V[], PetscScalar G[]) {
   const PetscInt fine = TIMES * LayoutCount(m->layout, v);
   PetscReal *a, *b;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * fine, &a, 2 * fine, &b));
-  for (PetscInt q = 0; q < 2 * fine; q++) {
-    const MomentPoint *o = &point[q / 2];
-    const PetscReal moment = o->weight * o->change;
-    a[q] = moment * (o->by_a[q % 2] + 0.5 * o->change * o->weight_by_a[q % 2]);
-    b[q] = moment * o->by_b[q % 2];
-  }
-  MomentSlopesTranspose(m, v, alpha, a, b, G);
-  PetscCall(PetscFree2(a, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* G += alpha N V. */
-static PetscErrorCode MomentAddNewton(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
-                                      const PetscScalar V[], PetscScalar G[]) {
-  const PetscInt fine = TIMES * LayoutCount(m->layout, v);
-  PetscReal *a, *b;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * fine, &a, 2 * fine, &b));
-  MomentSlopes(m, v, V, a, b);
+  PetscCall(PetscCalloc2(2 * fine, &a, 2 * fine, &b));
+  if (V) MomentSlopes(m, v, V, a, b);
   for (PetscInt q = 0; q < fine; q++) {
     const MomentPoint *o = &point[q];
-    PetscReal change = 0;
+    PetscReal change = V ? 0 : o->change;
     for (int c = 0; c < 2; c++) change += o->by_a[c] * a[2 * q + c] + o->by_b[c] * b[2 * q + c];
     for (int c = 0; c < 2; c++) {
-      a[2 * q + c] = o->weight * change * o->by_a[c];
+      a[2 * q + c] = o->weight * change * (o->by_a[c] + (V ? 0 : 0.5 * change * o->weight_by_a[c]));
       b[2 * q + c] = o->weight * change * o->by_b[c];
     }
   }
@@ -117,7 +99,7 @@ PetscErrorCode MomentEnergy(Membrane m, PetscInt v, const PetscScalar X[], Petsc
   PetscCall(MomentPoints(m, v, X, point));
   for (PetscInt q = 0; q < fine; q++) sum += 0.5 * point[q].weight * PetscSqr(point[q].change);
   *energy = m->bending * m->part[v] * m->ds[v] / TIMES * sum;
-  if (G) PetscCall(MomentGradient(m, v, 1, point, G));
+  if (G) PetscCall(MomentAdd(m, v, 1, point, NULL, G));
   PetscCall(PetscFree(point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,8 +115,8 @@ static PetscErrorCode MomentPlace(void *context, PetscReal t, const PetscReal X[
     const PetscInt at = LayoutOffset(l, v);
     MomentPoint *point = o->point + TIMES * at;
     PetscCall(MomentPoints(m, v, own, point));
-    PetscCall(MomentGradient(m, v, 1, point, o->at + 2 * at));
-    PetscCall(MomentAddNewton(m, v, -1, point, own, o->at + 2 * at));
+    PetscCall(MomentAdd(m, v, 1, point, NULL, o->at + 2 * at));
+    PetscCall(MomentAdd(m, v, -1, point, own, o->at + 2 * at));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -146,7 +128,7 @@ static PetscErrorCode MomentRate(void *context, PetscReal alpha, const PetscScal
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt at = LayoutOffset(l, v);
-    PetscCall(MomentAddNewton(m, v, alpha, o->point + TIMES * at, V + 2 * at, F + 2 * at));
+    PetscCall(MomentAdd(m, v, alpha, o->point + TIMES * at, V + 2 * at, F + 2 * at));
     MembraneVesicleBending(m, v, -alpha * m->bending, V + 2 * at, F + 2 * at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -168,7 +150,7 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
   PetscCall(PetscCalloc1(2 * n, &unit));
   for (PetscInt k = 0; k < 2 * n; k++) {
     unit[k] = 1;
-    PetscCall(MomentAddNewton(m, v, alpha, o->point + TIMES * LayoutOffset(m->layout, v), unit, K + 2 * n * k));
+    PetscCall(MomentAdd(m, v, alpha, o->point + TIMES * LayoutOffset(m->layout, v), unit, K + 2 * n * k));
     MembraneVesicleBending(m, v, -alpha * m->bending, unit, K + 2 * n * k);
     unit[k] = 0;
   }
