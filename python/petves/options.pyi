@@ -78,6 +78,9 @@ class Options(TypedDict, total=False):
     contact_repulsion_range: Value  # D, up to which it acts (length); 0: 1.5 times the longest mean edge
     contact_adhesion: Value  # with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none
     contact_adhesion_range: Value  # B, width of the band from D to D + B in which they are drawn together (length); 0: D
+    contact_potential: Value  # coupled: H of the potential H ((d/z)^m - m/n (d/z)^n) between the points of different membranes, a length of both, z their distance (length^2/time^2); 0: none
+    contact_potential_distance: Value  # d, at which the potential is least (length)
+    contact_potential_exponents: Value  # m,n with m > n
     membrane_derivative: Literal['fd', 'bending', 'spectral'] | None  # derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges; split, penalty: fd
     membrane_law: Literal['inextensible', 'hooke', 'green', 'neo_hookean'] | None  # coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)
     membrane_stretching: Value  # E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)

@@ -67,4 +67,4 @@ PETSC_EXTERN PetscErrorCode ForcesSeams(Forces forces, const PetscReal Xstar[], 
 /* A row of the list: makes a force, or leaves its name NULL where the scene (NULL: none) has none of it. */
 typedef PetscErrorCode ForceCreate(Bodies bodies, Grid grid, Scene scene, Force *force);
 PETSC_EXTERN ForceCreate ForceCreate_Bending, ForceCreate_Turning, ForceCreate_Contact, ForceCreate_Gravity,
-    ForceCreate_Stretching, ForceCreate_Moment;
+    ForceCreate_Stretching, ForceCreate_Moment, ForceCreate_Potential;

@@ -1,7 +1,8 @@
 #include "bodies/forcelist.h"
 
-static ForceCreate *const rows[] = {ForceCreate_Bending, ForceCreate_Turning,    ForceCreate_Contact,
-                                    ForceCreate_Gravity, ForceCreate_Stretching, ForceCreate_Moment};
+static ForceCreate *const rows[] = {ForceCreate_Bending,  ForceCreate_Turning,    ForceCreate_Contact,
+                                    ForceCreate_Gravity,  ForceCreate_Stretching, ForceCreate_Moment,
+                                    ForceCreate_Potential};
 
 PetscErrorCode ForcesCreate(Bodies bodies, Grid grid, Scene scene, Forces *out) {
   PetscFunctionBeginUser;

@@ -172,9 +172,10 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
   return REFUSE(s, rules);
 }
 
-/* Membranes that stretch, remember, resist or let water through: what each of them needs. */
+/* Membranes that stretch, remember, resist, let water through or draw one another: what each of them needs. */
 static PetscErrorCode SceneCheckMembranes(Scene s) {
   const SceneMembrane *m = &s->membrane;
+  const ScenePotential *p = &s->potential;
   const PetscBool paper = strcmp(s->scheme.type, "coupled"), stretches = m->law != LAW_INEXTENSIBLE;
   PetscReal modulus = 0;
   for (PetscInt k = 0; k < m->stretching.n; k++) modulus = PetscMax(modulus, m->stretching.v[k]);
@@ -201,6 +202,10 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
      "-membrane_memory true: needs -scheme_type coupled and curvatures by -membrane_derivative spectral or bending; allowed: false, or these"},
     {!stretches && !m->memory && strcmp(m->rest, "initial"),
      "-membrane_rest {-membrane_rest}: this membrane neither stretches nor remembers; allowed: initial, or with a -membrane_law that stretches or -membrane_memory true"},
+    {p->strength > 0 && p->distance == 0,
+     "-contact_potential {-contact_potential}: no distance at which it is least; allowed: with -contact_potential_distance above 0"},
+    {p->exponents.n != 2 || p->exponents.v[0] <= p->exponents.v[1],
+     "-contact_potential_exponents {-contact_potential_exponents}: not m,n with m > n; allowed: such as 4,2 or 12,6"},
     {stretches && !s->scheme.length_target,
      "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"},
     {stretches && s->scheme.wanted > 0,

@@ -109,6 +109,13 @@ typedef struct {
   PetscReal band;     /* B, its width (length); 0: D */
 } SceneRepulsion;
 
+/* A potential between the points of different membranes, src/bodies/potential.h. */
+typedef struct {
+  PetscReal strength; /* H (length^2/time^2); 0: none */
+  PetscReal distance; /* d (length) */
+  RealList exponents; /* m, n */
+} ScenePotential;
+
 typedef struct {
   char type[OPTION_MAX_NAME];
   PetscInt order;                        /* in time */
@@ -159,6 +166,7 @@ struct _p_Scene {
   SceneGravity gravity;
   SceneCoupling coupling;
   SceneRepulsion repulsion;
+  ScenePotential potential;
   SceneScheme scheme;
   SceneTime time;
   SceneOutput output;

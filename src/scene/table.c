@@ -42,6 +42,10 @@ static PetscBool HasAdhesion(const void *scene) {
   return ((Scene)scene)->repulsion.adhesion > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool HasPotential(const void *scene) {
+  return ((Scene)scene)->potential.strength > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The 0 that stands for no springs is right for all schemes. */
 static PetscBool HasSprings(const void *scene) {
   const SceneScheme *scheme = &((Scene)scene)->scheme;
@@ -86,6 +90,7 @@ static const OptionNeed
   need_coupled = {"vesicles and -scheme_type coupled", .met = IsCoupled},
   need_repulsion = {"-contact_repulsion", .met = HasRepulsion},
   need_adhesion = {"-contact_adhesion", .met = HasAdhesion},
+  need_potential = {"-contact_potential", .met = HasPotential},
   need_penalty = {"vesicles and -scheme_type penalty", .met = HasSprings},
   need_order = {"-scheme_order 2 or 3", AT(scheme.order), IS(2) | IS(3)},
   need_adapt = {"-time_adapt error", AT(time.adapt), IS(ADAPT_ERROR)},
@@ -175,6 +180,9 @@ static const OptionRow table[] = {
   {"-contact_repulsion_range", OPT_REAL, AT(repulsion.range), "0", ">=0", "D, up to which it acts (length); 0: 1.5 times the longest mean edge", &need_repulsion},
   {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none", &need_repulsion},
   {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D", &need_adhesion},
+  {"-contact_potential", OPT_REAL, AT(potential.strength), "0", ">=0", "coupled: H of the potential H ((d/z)^m - m/n (d/z)^n) between the points of different membranes, a length of both, z their distance (length^2/time^2); 0: none", &need_coupled},
+  {"-contact_potential_distance", OPT_REAL, AT(potential.distance), "0", ">=0", "d, at which the potential is least (length)", &need_potential},
+  {"-contact_potential_exponents", OPT_REALS, AT(potential.exponents), "4,2", ">0", "m,n with m > n", &need_potential},
   {"-membrane_derivative", OPT_ENUM, AT(membrane.derivative), "spectral", "fd|bending|spectral", "derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges", &need_vesicles},
   {"-membrane_law", OPT_ENUM, AT(membrane.law), "inextensible", "inextensible|hooke|green|neo_hookean", "coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)", &need_vesicles},
   {"-membrane_stretching", OPT_REALS, AT(membrane.stretching), "0", ">=0", "E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)", &need_vesicles},
