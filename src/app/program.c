@@ -51,7 +51,7 @@ static const char *RankGiven(void) {
 
 static PetscBool IsFirst(void) {
   const char *const rank = RankGiven();
-  return !rank || !atoi(rank) ? PETSC_TRUE : PETSC_FALSE;
+  return !rank || !atoi(rank);
 }
 
 /* Settings for a process that is started alone. They keep Open MPI from starting a daemon, from looking for a network
@@ -185,7 +185,7 @@ static PetscErrorCode Run(PetscBool *good) {
 
 static int RunOrUsage(int argc, char **argv) {
   const char *const given = getenv("PETSC_OPTIONS");
-  const PetscBool asked = argc > 1 || (given && given[strspn(given, " \t\n")]) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool asked = argc > 1 || (given && given[strspn(given, " \t\n")]);
   PetscBool good = PETSC_TRUE;
   PetscErrorCode error;
   StartAlone();
@@ -200,7 +200,7 @@ static int RunOrUsage(int argc, char **argv) {
 
 int PetvesMain(int argc, char **argv) {
   static char options_file[] = "-options_file", help[] = "-help";
-  const PetscBool run = argc > 1 && !strcmp(argv[1], "run") ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool run = argc > 1 && !strcmp(argv[1], "run");
   char *scene = NULL, **words;
   int status, n = 1;
   if (argc > 1 && !strcmp(argv[1], "help")) argv[1] = help;

@@ -85,7 +85,7 @@ static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
                                           .near = (NearFieldType)scene->coupling.near_field,
                                           .spec = &scene->fluid,
                                           .box_part = SceneHasBoxPart(scene),
-                                          .lag = scene->fluid.inertia == INERTIA_UNSTEADY ? PETSC_TRUE : PETSC_FALSE,
+                                          .lag = scene->fluid.inertia == INERTIA_UNSTEADY,
                                           .solver = !SceneIsProjection(scene)},
                              .area_target = SceneHasAreaTarget(scene),
                              .scene = scene};
@@ -189,9 +189,9 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
 static PetscBool IsSteady(Simulation s) {
   const Record *r = &s->output->record;
   const PetscReal tolerance = s->scene->time.steady_tol;
-  PetscBool steady = tolerance > 0 && r->vesicles ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool steady = tolerance > 0 && r->vesicles;
   for (PetscInt v = 0; v < r->vesicles && steady; v++)
-    steady = r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED] < tolerance ? PETSC_TRUE : PETSC_FALSE;
+    steady = r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED] < tolerance;
   return steady;
 }
 

@@ -29,7 +29,7 @@ static PetscBool OptionIsPetscs(const char *name) {
                                "-memory", "-options_", "-on_error", "-objects"};
   for (size_t k = 0; k < sizeof(heads) / sizeof(heads[0]); k++)
     if (!strncmp(name, heads[k], strlen(heads[k]))) return PETSC_TRUE;
-  return strstr(name, "_ksp_") || strstr(name, "_pc_") ? PETSC_TRUE : PETSC_FALSE;
+  return strstr(name, "_ksp_") || strstr(name, "_pc_");
 }
 
 /* PETSc's messages about a bad option of its own (-tension_ksp_type foo) have the value but not the option. name: the
@@ -74,8 +74,7 @@ PetscErrorCode PetvesErrorHandler(MPI_Comm comm, int line, const char *function,
     message = "out of memory; allowed: fewer cells or vesicles, a larger limit, or more nodes";
   }
   if ((rank || among) && code == PETSC_ERR_USER_INPUT && !kept) return code; /* rank 0 prints it */
-  mistake = ErrorOneLine(code, message, text) || code == PETSC_ERR_USER_INPUT || base.one_line ? PETSC_TRUE
-                                                                                               : PETSC_FALSE;
+  mistake = ErrorOneLine(code, message, text) || code == PETSC_ERR_USER_INPUT || base.one_line;
   if (!mistake) { /* add the place in the source */
     const size_t used = strlen(text);
     (void)PetscSNPrintf(text + used, sizeof(text) - used, " (%s() in %s, line %d, rank %d)", function, file, line,

@@ -69,7 +69,7 @@ static PetscErrorCode Create(Coupling coupling, const char prefix[], int each, P
   *out = s;
   s->coupling = coupling;
   s->prefix = prefix;
-  PetscCall(ForcingCreate(g, each == 1 ? PETSC_TRUE : PETSC_FALSE, &s->r));
+  PetscCall(ForcingCreate(g, each == 1, &s->r));
   PetscCall(LayoutCreateVec(l, 2, &s->U));
   PetscCall(MatCreateShell(g->comm, each * l->n, each * l->n, each * l->M, each * l->M, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))mult));
@@ -172,7 +172,7 @@ static PetscErrorCode SetUpChat(LagrangianSolver s) {
   PetscCall(PCSetOperators(s->chat, Chat, Chat));
   PetscCall(PCSetUp(s->chat));
   PetscCall(PCGetFailedReason(s->chat, &why));
-  PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, why != PC_NOERROR ? PETSC_TRUE : PETSC_FALSE, &s->failed));
+  PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, why != PC_NOERROR, &s->failed));
   PetscCall(MatDestroy(&Chat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,7 +4,7 @@
 void CellStencil(Field f, const PetscInt cell[2], PaddedStencil *padded) {
   Stencil stencil;
   for (int dir = 0; dir < 2; dir++) {
-    const PetscBool faces = (int)f == dir ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool faces = (int)f == dir;
     stencil.n[dir] = faces ? 2 : 1;
     stencil.first[dir] = cell[dir] - (faces ? 1 : 0);
     stencil.weight[dir][0] = stencil.weight[dir][1] = faces ? 0.5 : 1;

@@ -179,8 +179,7 @@ static PetscBool CurveRoot(CurveLayer c, Point z, Point *t0, Point *slope) {
     *t0 += step;
   }
   (void)FourierSeriesAt(c->n, c->curve, *t0, slope);
-  return cabs(step) < 1e-8 && PetscAbsReal(cimag(*t0)) * c->fine.n <= 2 * 2 * PETSC_PI * CLOSE ? PETSC_TRUE
-                                                                                               : PETSC_FALSE;
+  return cabs(step) < 1e-8 && PetscAbsReal(cimag(*t0)) * c->fine.n <= 2 * 2 * PETSC_PI * CLOSE;
 }
 
 /* The sums over the finer points, with what the trapezoidal rule lacks at the poles. */
@@ -208,7 +207,7 @@ void CurveLayerAdd(CurveLayer c, const PetscReal x[2], PetscReal u[2], PetscReal
   u[0] += c->factor[0] * creal(s.velocity);
   u[1] += c->factor[0] * cimag(s.velocity);
   *p += c->factor[1] * s.pressure;
-  *inside = s.winding > PETSC_PI ? PETSC_TRUE : PETSC_FALSE;
+  *inside = s.winding > PETSC_PI;
 }
 
 PetscBool CurveLayerContains(CurveLayer c, const PetscReal x[2]) {

@@ -129,7 +129,7 @@ PetscErrorCode FinePairGap(const LayerSetting *set, PetscInt row, PetscInt colum
     PetscCall(FineCurveDestroy(&a));
     PetscCall(FineCurveDestroy(&b));
   }
-  *close = *gap <= CLOSE * ds ? PETSC_TRUE : PETSC_FALSE;
+  *close = *gap <= CLOSE * ds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

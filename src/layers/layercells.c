@@ -132,7 +132,7 @@ static void SingleSources(LayerCells *s, PetscInt n) {
   for (PetscInt k = 0; k < 2 * n; k++) {
     Stencil stencil;
     for (int dir = 0; dir < 2; dir++) {
-      const PetscBool along = k % 2 == dir ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool along = k % 2 == dir;
       const PetscReal r = (s->X[k - k % 2 + dir] - m->grid->lo[dir]) / m->grid->h - (along ? 1.0 : 0.5);
       stencil.n[dir] = (along ? m->kernel->along : m->kernel->across)(r, &stencil.first[dir], stencil.weight[dir]);
     }

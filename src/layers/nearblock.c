@@ -37,7 +37,7 @@ static PetscBool ChunkIsAlone(LayerPairs f, const PairChunk *c) {
   ChunkPlace(f, c, own);
   for (int dir = 0; dir < 2; dir++)
     r2 += PetscSqr(PetscMax(0, PetscMax(bounds->low[dir] - own[dir], own[dir] - bounds->high[dir])));
-  return !f->set->box && r2 > c->reach * c->reach ? PETSC_TRUE : PETSC_FALSE;
+  return !f->set->box && r2 > c->reach * c->reach;
 }
 
 /* Four of the chunk's pairs to the marker's x and y row. */
@@ -74,9 +74,7 @@ static void FillRow(LayerPairs f, const NearBlock *b, const NearRow *r, const Di
                     NearStore *s) {
   c->i = r->row;
   c->plain = f->image &&
-                     WallsAreFar(f->set->markers->grid, f->set->markers->X + 2 * r->row, &f->bounds[b->column], c->off)
-                 ? PETSC_TRUE
-                 : PETSC_FALSE;
+             WallsAreFar(f->set->markers->grid, f->set->markers->X + 2 * r->row, &f->bounds[b->column], c->off);
   c->alone = ChunkIsAlone(f, c);
   for (int dir = 0; dir < 2 && f->from.normal; dir++) c->N[dir] = f->from.normal[2 * r->row + dir] - (Lanes){0};
   if (c->plain && c->shared[0]) {
@@ -129,7 +127,7 @@ static PetscErrorCode AddSelf(LayerPairs f, const NearBlock *b, PetscBool exact,
 static PetscBool CountsWall(LayerPairs f, const NearBlock *b, int wall) {
   const Grid g = f->set->markers->grid;
   const PetscReal gap = WallGap(g, wall, &f->bounds[b->row], &f->bounds[b->column]);
-  return g->wall[wall / 2] && (f->set->box || gap < IMAGE_REACH * g->h) ? PETSC_TRUE : PETSC_FALSE;
+  return g->wall[wall / 2] && (f->set->box || gap < IMAGE_REACH * g->h);
 }
 
 /* Faces that the markers of a dipoles' block share, where no pair is farther apart than the lattice's tables reach, nor
@@ -229,10 +227,10 @@ PetscErrorCode NearBlockFill(LayerPairs f, const NearBlock *b, PetscBool exact, 
   FinePair atwall[4];
   PetscInt walls;
   PetscFunctionBeginUser;
-  c.back = !b->symmetric || b->row > b->column ? PETSC_TRUE : PETSC_FALSE;
+  c.back = !b->symmetric || b->row > b->column;
   c.reach = f->kernel->reach[NearBlockIsSelf(b) ? NEAR_ONE : NEAR_TWO] * f->set->markers->grid->h;
   if (!f->kernel->force && !c.exact) PetscCall(ShareFaces(f, b, &c, &faces));
-  for (int wall = 0; wall < 4; wall++) c.walls[wall] = f->image && CountsWall(f, b, wall) ? PETSC_TRUE : PETSC_FALSE;
+  for (int wall = 0; wall < 4; wall++) c.walls[wall] = f->image && CountsWall(f, b, wall);
   for (int dir = 0; dir < 2 && !b->symmetric && !c.exact; dir++) PetscCall(PetscCalloc1(r.count + LANES, &c.flux[dir]));
   do FillRow(f, b, &r, &faces, &c, s);
   while (NearBlockNext(l, b, &r));

@@ -34,12 +34,12 @@ typedef struct {
 
 /* NearBlockIsSelf - whether it is of a body with itself, not with an image. */
 static inline PetscBool NearBlockIsSelf(const NearBlock *b) {
-  return b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return b->row == b->column && b->shift[0] == 0 && b->shift[1] == 0;
 }
 
 /* NearBlockIsHalf - whether its rows are what is right of the diagonal. */
 static inline PetscBool NearBlockIsHalf(const NearBlock *b) {
-  return b->symmetric && NearBlockIsSelf(b) ? PETSC_TRUE : PETSC_FALSE;
+  return b->symmetric && NearBlockIsSelf(b);
 }
 
 /* One marker's two rows of a block, the y row a stride behind. */

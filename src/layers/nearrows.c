@@ -1,7 +1,7 @@
 #include "layers/nearrows.h"
 
 static inline PetscBool IsOwn(Layout l, PetscInt body) {
-  return body >= l->own && body < l->end ? PETSC_TRUE : PETSC_FALSE;
+  return body >= l->own && body < l->end;
 }
 
 /* NearBlockApply with what the compiler has to know. */
@@ -40,13 +40,9 @@ static inline PetscInt EntryAt(const MarkerRange *rows, const MarkerRange *colum
 
 void NearBlockAdd(Layout l, const NearBlock *b, const NearStore *s, PetscReal scale, const MarkerRange *rows,
                   const MarkerRange *columns, PetscReal out[]) {
-  const PetscBool there = b->symmetric && MarkerRangeHolds(l, b->row, rows) && MarkerRangeHolds(l, b->column, columns)
-                              ? PETSC_TRUE
-                              : PETSC_FALSE;
+  const PetscBool there = b->symmetric && MarkerRangeHolds(l, b->row, rows) && MarkerRangeHolds(l, b->column, columns);
   const PetscBool back = IsOwn(l, b->column) && MarkerRangeHolds(l, b->column, rows) &&
-                                 MarkerRangeHolds(l, b->row, columns)
-                             ? PETSC_TRUE
-                             : PETSC_FALSE;
+                         MarkerRangeHolds(l, b->row, columns);
   NearRow r = NearBlockBegin(l, b);
   if (!there && !back) return;
   do

@@ -43,14 +43,12 @@ static inline void ApplyRows(const int rows, const BlockRows r, PetscReal alpha,
 /* NearBlockMeets - whether a block has sources in columns and responses in rows, or the other way round; each a range
    of whole bodies. Not collective. */
 static inline PetscBool MarkerRangeHolds(Layout l, PetscInt body, const MarkerRange *range) {
-  return l->start[body] >= range->first && l->start[body] < range->first + range->n ? PETSC_TRUE : PETSC_FALSE;
+  return l->start[body] >= range->first && l->start[body] < range->first + range->n;
 }
 static inline PetscBool NearBlockMeets(Layout l, const NearBlock *b, const MarkerRange *rows,
                                        const MarkerRange *columns) {
   return (MarkerRangeHolds(l, b->row, rows) && MarkerRangeHolds(l, b->column, columns)) ||
-                 (MarkerRangeHolds(l, b->row, columns) && MarkerRangeHolds(l, b->column, rows))
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+         (MarkerRangeHolds(l, b->row, columns) && MarkerRangeHolds(l, b->column, rows));
 }
 
 /* NearBlockApply - velocity[2n] of own markers += alpha C source[2M] of one block, both ways where its kernel is

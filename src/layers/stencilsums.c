@@ -157,7 +157,7 @@ void StencilRowAdd(const OffsetEntry *t, const PaddedStencil *response, const Pa
 
 /* Whether a marker's u and v have the points of cbs54. */
 static inline PetscBool HasFixed(const PaddedStencil s[2]) {
-  return s[0].n[0] == 5 && s[0].n[1] == 4 && s[1].n[0] == 4 && s[1].n[1] == 5 ? PETSC_TRUE : PETSC_FALSE;
+  return s[0].n[0] == 5 && s[0].n[1] == 4 && s[1].n[0] == 4 && s[1].n[1] == 5;
 }
 
 /* u from v at an offset is v from u the other way round, which is even in the distance of the two: the table of v from

@@ -19,7 +19,7 @@ static void WallImageHalf(WallImage m, int wall, PetscInt i, PetscInt j, PetscRe
 /* Whether stencils of a pair are summed. */
 static PetscBool ImageIsNear(PetscReal x, PetscReal a, PetscReal b) {
   const PetscReal reach = PetscMin(a, b) < FOLD_SCALED ? IMAGE_CELLS : IMAGE_OFF;
-  return x * x + PetscSqr(a + b) < reach * reach ? PETSC_TRUE : PETSC_FALSE;
+  return x * x + PetscSqr(a + b) < reach * reach;
 }
 
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility K + image -
@@ -32,7 +32,7 @@ static void WallImageAddOne(WallImage m, int wall, PetscInt i, PetscInt j, const
   const Lanes x = at[0] - (Lanes){0}, a = at[1] - (Lanes){0}, b = at[2] - (Lanes){0};
   const PetscReal scale[2] = {e->scale, m->source ? 1 : f->scale}, across = m->form.moment[1].second;
   const PetscBool near = ImageIsNear(at[0], at[1], at[2]);
-  const PetscBool scaled = scale[0] < 1 || scale[1] < 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool scaled = scale[0] < 1 || scale[1] < 1;
   Lanes exact[PAIR_PARTS] = {{0}}, far[PAIR_PARTS] = {{0}};
   PetscReal free[PAIR_PARTS] = {0}, part[PAIR_PARTS];
   if (near || scaled) { /* free: the lattice's mobility without walls, seen from the wall, in cells, of viscosity 1 */
@@ -90,9 +90,7 @@ PetscBool WallsAreFar(Grid g, const PetscReal X[2], const NearBounds *box, Petsc
   for (int wall = 0; wall < 4; wall++) {
     const PetscReal off = PetscMin(WallGap(g, wall, &at, &at), WallGap(g, wall, box, box));
     const PetscBool near = g->wall[wall / 2] &&
-                                   (off < 2 * FOLD_SCALED * g->h || WallGap(g, wall, &at, box) < IMAGE_OFF * g->h)
-                               ? PETSC_TRUE
-                               : PETSC_FALSE;
+                           (off < 2 * FOLD_SCALED * g->h || WallGap(g, wall, &at, box) < IMAGE_OFF * g->h);
     if (near) all = PETSC_FALSE;
     if (far) far[wall] = near ? PETSC_FALSE : PETSC_TRUE;
   }
@@ -138,7 +136,7 @@ static void PlaceEnd(Markers m, PetscReal y, PetscReal across, ImageEnd *e) {
 static void PlaceDipole(PetscReal y, WallRows row[DIPOLE_COUNT]) {
   static const KernelWeights weights[DIPOLE_COUNT] = {KernelSpline4, KernelSpline6, KernelSpline5};
   for (int part = 0; part < DIPOLE_COUNT && y < IMAGE_CELLS; part++) {
-    const PetscBool nodes = part == DIPOLE_XY ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool nodes = part == DIPOLE_XY;
     row[part] = WallRowsOf(weights[part], y, nodes);
     WallRowsFold(FOLD_SMOOTH, nodes, &row[part]);
   }

@@ -136,8 +136,8 @@ void DipoleRowsAddForce(DipoleRows d, Field f, PetscInt j, PetscScalar row[]) {
   if (d->own) RowAdd(d->grid->columns[f], DipoleRow(d, f, j), row);
   if (f == FIELD_V) return;
   /* beyond a wall b is minus the row next to the wall */
-  const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool top = d->grid->wall[1] && d->grid->first + j == d->grid->n[1] - 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool bottom = d->grid->wall[1] && d->grid->first + j == 0;
+  const PetscBool top = d->grid->wall[1] && d->grid->first + j == d->grid->n[1] - 1;
   const PetscScalar *low = DipoleRow(d, FIELD_P, bottom ? j : j - 1), *high = DipoleRow(d, FIELD_P, top ? j : j + 1);
   RowAddLaplacian(n, d->grid->wall[0], d->nu / PetscSqr(d->grid->h),
                   (const PetscScalar *[]){low, DipoleRow(d, FIELD_P, j), high},

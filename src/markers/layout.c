@@ -113,7 +113,7 @@ PetscErrorCode LayoutSum(Layout l, int each, const PetscScalar part[], PetscScal
 
 /* Whether rank `root` owns all markers, so that no message is needed. */
 static PetscBool LayoutIsOnRank(Layout l, PetscMPIInt root) {
-  return l->count[0][root] == l->M ? PETSC_TRUE : PETSC_FALSE;
+  return l->count[0][root] == l->M;
 }
 
 PetscErrorCode LayoutToRank(Layout l, PetscMPIInt root, int each, const PetscScalar own[], PetscScalar all[]) {

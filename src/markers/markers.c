@@ -60,7 +60,7 @@ PetscErrorCode MarkersCheck(Markers m, Layout layout, Vec X, char message[PETVES
    first entry; the rank has `own` entries from `first` on. Entries across a periodic seam give all of the rank's. */
 static void WindowClip(PetscBool wall, PetscInt n, PetscInt first, PetscInt own, PetscInt low, PetscInt high,
                        PetscInt window[2]) {
-  const PetscBool seam = !wall && (low < 0 || high > n) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool seam = !wall && (low < 0 || high > n);
   window[0] = seam ? 0 : PetscMin(PetscMax(low - first, 0), own);
   window[1] = seam ? own : PetscMax(PetscMin(high - first, own), window[0]);
 }
@@ -81,7 +81,7 @@ static void MarkersSetWindow(Markers m) {
 static void MarkerFoldStencil(Markers m, int comp, const PetscReal X[2], Stencil *s) {
   const Grid g = m->grid;
   for (int dir = 0; dir < 2; dir++) {
-    const PetscBool normal = comp == dir ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool normal = comp == dir;
     if (!g->wall[dir]) continue;
     if (normal && m->scaled) {
       const PetscReal y = (X[dir] - g->lo[dir]) / g->h;
@@ -205,7 +205,7 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->kernel = KernelFind(kernel);
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
   PetscCall(PetscMalloc4(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->force, 2 * l->M, &m->part));
-  m->folded = m->scaled = folded && (g->wall[0] || g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+  m->folded = m->scaled = folded && (g->wall[0] || g->wall[1]);
   m->least =
       folded ? KERNEL_FOLDED_CELLS
              : KERNEL_WALL_CELLS; /* within the kernels' reach the mobility with the near field may not be positive */

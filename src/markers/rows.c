@@ -75,7 +75,7 @@ static inline const Stencil *RowStencil(StencilRows r, const RowEntry *e) {
 
 /* Whether all points of a stencil, zeros included, are next to one another in a row. */
 static inline PetscBool RowIsWhole(const Stencil *s, PetscInt columns) {
-  return s->first[0] >= 0 && s->first[0] + STENCIL_POINTS <= columns ? PETSC_TRUE : PETSC_FALSE;
+  return s->first[0] >= 0 && s->first[0] + STENCIL_POINTS <= columns;
 }
 
 /* The column of point a of a stencil; -1: there is none, and the weight is zero. */

@@ -95,7 +95,7 @@ static void BoxGridLattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DI
 /* Whether x and y are alike. */
 static PetscBool IsSquare(const BoxAxis axis[2]) {
   const PetscReal x = axis[0].high - axis[0].low, y = axis[1].high - axis[1].low;
-  return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x ? PETSC_TRUE : PETSC_FALSE;
+  return axis[0].wall == axis[1].wall && PetscAbsReal(x - y) < 1e-12 * x;
 }
 
 /* Add W of a pair of places and of its mirror images between walls. In a mirror one component of a velocity or of a

@@ -47,7 +47,7 @@ static PetscBool AreInMiddle(BoxPart b) {
       if (x < g->lo[d] + quarter || x > g->hi[d] - quarter) return PETSC_FALSE;
     }
   }
-  return (g->wall[0] || g->wall[1]) && !b->lattice.dipole ? PETSC_TRUE : PETSC_FALSE;
+  return (g->wall[0] || g->wall[1]) && !b->lattice.dipole;
 }
 
 /* The table that reaches all markers, made when it is first needed, and room for what the markers have of it. */

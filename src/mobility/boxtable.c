@@ -196,7 +196,7 @@ static PetscErrorCode BoxTableTransform(const BoxTable *t, const PetscReal W[]) 
 /* Whether an eigenvalue is kept. With dipoles they come in pairs of either sign, whose vectors differ in the sign of
    the tensors' part: the positive one, doubled, is the pair in what tensors do to velocities. */
 static PetscBool IsKept(const BoxTable *t, PetscReal l, PetscReal least) {
-  return (t->source ? l : PetscAbsReal(l)) > least ? PETSC_TRUE : PETSC_FALSE;
+  return (t->source ? l : PetscAbsReal(l)) > least;
 }
 
 /* Keep the block's eigenvectors (columns of Q) whose eigenvalues l are larger than `least`. */

@@ -176,7 +176,7 @@ static PetscErrorCode DoubleLayerSetDipoles(DoubleLayer s, const PetscScalar U[]
   PetscCall(SetJump(s, U));
   for (PetscInt k = 0; k < s->near->set.bodies->layout->M; k++) {
     const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
-    const PetscBool none = J[0] == 0 && J[1] == 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool none = J[0] == 0 && J[1] == 0;
     PetscReal *T = s->tensor + DIPOLE_COUNT * k;
     T[DIPOLE_XX] = none ? 0 : 2 * J[0] * N[0];
     T[DIPOLE_YY] = none ? 0 : 2 * J[1] * N[1];

@@ -76,7 +76,7 @@ PetscErrorCode NearDistantAdd(NearDistant d, const PetscReal X[], PetscInt v, Pe
     if (!d->function[b].value) PetscCall(DistantFunctions(LayoutCount(l, b), X + 2 * l->start[b], &d->function[b]));
   }
   const PetscInt numbers = d->function[v].stride * d->function[w].stride;
-  *added = 2 * numbers < 4 * LayoutCount(l, v) * LayoutCount(l, w) ? PETSC_TRUE : PETSC_FALSE;
+  *added = 2 * numbers < 4 * LayoutCount(l, v) * LayoutCount(l, w);
   if (!*added) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ArrayReserve((size_t)d->pairs + 1, &d->room, &d->pair));
   d->pair[d->pairs++] = (NearDistantPair){v, w, {shift[0], shift[1]}, d->values};
@@ -160,7 +160,7 @@ PetscErrorCode NearDistantApply(NearDistant d, PetscReal alpha, const PetscScala
   for (PetscInt k = 0; k < d->pairs; k++) {
     const NearDistantPair *p = &d->pair[k];
     const PetscInt stride = d->function[p->column].stride, from = d->start[p->column];
-    const PetscBool both = p->column >= l->own && p->column < l->end ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool both = p->column >= l->own && p->column < l->end;
     for (PetscInt i = 0; i < d->function[p->row].stride; i += LANES) {
       const PetscInt to = d->start[p->row] + i;
       ApplyRows(2, (BlockRows){PETSC_TRUE, d->value, p->at + (size_t)(i * stride), stride}, 1, d->amplitude + to,

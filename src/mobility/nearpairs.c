@@ -23,11 +23,9 @@ static PetscBool Meet(const NearBounds *a, const NearBounds *b, const PetscReal 
    vesicles values that are far from large are in single precision. */
 static PetscErrorCode NearListAddBlock(NearList *f, PetscInt v, PetscInt w, const PetscReal shift[2], PetscReal gap) {
   const Layout l = f->pairs->set->bodies->layout;
-  const PetscBool many = l->bodies > MANY ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool many = l->bodies > MANY;
   const PetscBool single = many && !f->pairs->set->markers->grid->free &&
-                                   gap >= SINGLE * f->pairs->set->markers->grid->h
-                               ? PETSC_TRUE
-                               : PETSC_FALSE;
+                           gap >= SINGLE * f->pairs->set->markers->grid->h;
   size_t *values = single ? &f->count.singles : &f->count.values;
   NearBlock *b;
   PetscFunctionBeginUser;
@@ -120,7 +118,7 @@ static PetscBool AreDistant(NearList *f, PetscInt v, PetscInt w, PetscReal gap) 
                        &f->pairs->bounds[body[1 - end]], NULL))
         return PETSC_FALSE;
   }
-  return gap >= least ? PETSC_TRUE : PETSC_FALSE;
+  return gap >= least;
 }
 
 /* A block for each image of w; with a box part one, of the images nearest to each marker, named after the nearest, in
@@ -157,7 +155,7 @@ typedef struct {
 static PetscBool Keep(void *context, PetscInt v, PetscInt w, const PetscReal d[2]) {
   Candidates *c = (Candidates *)context;
   const Layout l = c->layout;
-  const PetscBool first = v >= l->own && v < l->end ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool first = v >= l->own && v < l->end;
   if (!first && (w < l->own || w >= l->end)) return PETSC_FALSE;
   if ((c->resting[v] && c->resting[w]) != c->fixed) return PETSC_FALSE;
   c->error = ArrayReserve((size_t)c->count + 1, &c->room, &c->pair);

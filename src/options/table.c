@@ -8,7 +8,7 @@ static void *OptionPlace(const OptionTable *t, void *values, PetscInt i) {
 
 /* The value that the user gave, as long as it may be, or the default. */
 static PetscErrorCode OptionReadValue(MPI_Comm comm, const OptionRow *o, PetscBool given, void *place) {
-  const PetscBool ranged = *o->range && strcmp(o->range, "any") ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool ranged = *o->range && strcmp(o->range, "any");
   const char *text = NULL;
   PetscFunctionBeginUser;
   if (given) PetscCall(PetscOptionsFindPair(NULL, NULL, o->name, &text, NULL));
@@ -61,7 +61,7 @@ PetscInt OptionFind(const OptionTable *t, const char name[]) {
 
 PetscBool OptionGiven(const OptionTable *t, const char name[]) {
   const PetscInt i = OptionFind(t, name);
-  return i >= 0 && t->given[i] ? PETSC_TRUE : PETSC_FALSE;
+  return i >= 0 && t->given[i];
 }
 
 PetscErrorCode OptionChoose(const OptionTable *t, void *values, const char name[], const char text[]) {
@@ -130,7 +130,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
   for (PetscInt i = 0; i < t->n; i++) {
     char *text;
     PetscBool left = OptionUsed(&t->row[i], values) ? PETSC_FALSE : PETSC_TRUE;
-    for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name) ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name);
     if (left) continue;
     PetscCall(OptionText(t, values, i, &text));
     if (*text) OptionPrint(file, t->row[i].name, text);

@@ -11,22 +11,22 @@ static PetscBool OptionParseReal(const char *text, PetscReal *value) {
   if (!*text) return PETSC_FALSE;
   *value = strtod(text, &end);
   while (isspace((unsigned char)*end)) end++;
-  return !*end && !PetscIsInfOrNanReal(*value) ? PETSC_TRUE : PETSC_FALSE;
+  return !*end && !PetscIsInfOrNanReal(*value);
 }
 
 static PetscBool OptionInRange(const char *range, PetscReal x) {
   double a, b;
-  if (!strcmp(range, ">0")) return x > 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (sscanf(range, ">=%lf", &a) == 1) return x >= a ? PETSC_TRUE : PETSC_FALSE;
-  if (sscanf(range, "(%lf,%lf)", &a, &b) == 2) return x > a && x < b ? PETSC_TRUE : PETSC_FALSE;
-  if (sscanf(range, "[%lf,%lf]", &a, &b) == 2) return x >= a && x <= b ? PETSC_TRUE : PETSC_FALSE;
+  if (!strcmp(range, ">0")) return x > 0;
+  if (sscanf(range, ">=%lf", &a) == 1) return x >= a;
+  if (sscanf(range, "(%lf,%lf)", &a, &b) == 2) return x > a && x < b;
+  if (sscanf(range, "[%lf,%lf]", &a, &b) == 2) return x >= a && x <= b;
   return PETSC_TRUE;
 }
 
 /* One number of a value; where the value is a list, a message names both. */
 static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const char *all, const char *text,
                                         PetscReal *x) {
-  const PetscBool integer = o->type == OPT_INT || o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool integer = o->type == OPT_INT || o->type == OPT_INTS;
   const char *what = integer ? "an integer" : "a number";
   char part[128] = "";
   PetscFunctionBeginUser;
@@ -160,8 +160,8 @@ PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, 
   const OptionRow *o = &t->row[i];
   const void *place = (const char *)values + o->offset;
   const RealList *list = (const RealList *)place;
-  const PetscBool listed = o->type == OPT_REALS || o->type == OPT_INTS ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool real = o->type == OPT_REALS || o->type == OPT_REAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool listed = o->type == OPT_REALS || o->type == OPT_INTS;
+  const PetscBool real = o->type == OPT_REALS || o->type == OPT_REAL;
   const void *number = listed ? (const void *)list->v : place;
   const PetscInt n = listed ? list->n : o->type == OPT_REAL || o->type == OPT_INT ? 1 : 0;
   const size_t room = PETSC_MAX_PATH_LEN + DIGITS * (size_t)n;

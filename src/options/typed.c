@@ -82,8 +82,7 @@ static void TypedCheckName(Typed *t, const Source *from, const char *name) {
 
 /* Write the message of a word that stands where an option should begin: after an option with a value, or alone. */
 static void TypedWrongWord(Typed *t, const Source *from, const char *name, const char *value, const char *word) {
-  const PetscBool comma = value && *value && (value[strlen(value) - 1] == ',' || *word == ',') ? PETSC_TRUE
-                                                                                               : PETSC_FALSE;
+  const PetscBool comma = value && *value && (value[strlen(value) - 1] == ',' || *word == ',');
   if (value && *value == '=')
     TypedWrong(t, from, "%.60s = %.60s: an equals sign; allowed: a blank, as in %.60s %.60s", name, word, name, word);
   else if (value)
@@ -118,9 +117,8 @@ PetscBool TypedIsOwn(const char *name, const char *value) {
   static const char *const shows[] = {"_view", "_monitor", "_converged_r", NULL}, *const type[] = {"_type", NULL};
   if (NameHasPart(name, first, PETSC_TRUE) || NameHasPart(name, any, PETSC_FALSE)) return PETSC_TRUE;
   if (!value || !*value) return PETSC_FALSE;
-  return NameHasPart(name, shows, PETSC_FALSE) || (NameHasPart(name, type, PETSC_FALSE) && !strcasecmp(value, "python"))
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+  return NameHasPart(name, shows, PETSC_FALSE) ||
+         (NameHasPart(name, type, PETSC_FALSE) && !strcasecmp(value, "python"));
 }
 
 /* Ways to give options that PETSc follows without a check of their words. */
@@ -176,7 +174,7 @@ static int TypedCutLine(char *line, Word word[]) {
   for (char *p = line;;) {
     p += strspn(p, " \t\f\v");
     if (!*p || *p == '#') return n;
-    word[n].quoted = *p == '"' || *p == '\'' ? PETSC_TRUE : PETSC_FALSE;
+    word[n].quoted = *p == '"' || *p == '\'';
     if (word[n].quoted) {
       const char quote = *p++;
       word[n++].text = p;
@@ -233,7 +231,7 @@ static void TypedTakeText(Typed *t, Source *from, char *text, size_t length) {
                      from->name, from->number, (unsigned char)*p);
       break;
     }
-    const PetscBool crlf = *p == '\r' && p[1] == '\n' ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool crlf = *p == '\r' && p[1] == '\n';
     *p = 0;
     p += crlf ? 2 : 1;
     from->line = line;
@@ -259,8 +257,7 @@ static void TypedTakeYaml(Typed *t, Source *from, const char *text, size_t lengt
     const Word word[2] = {{option, PETSC_FALSE}, {value[k % n], PETSC_TRUE}};
     (void)snprintf(option, sizeof(option), "-%s", name[k % n]);
     from->line = option;
-    if (NameIsFile(option) == (k < n ? PETSC_TRUE : PETSC_FALSE))
-      TypedTakeWords(t, from, word[1].text ? 2 : 1, word, 1);
+    if (NameIsFile(option) == (k < n)) TypedTakeWords(t, from, word[1].text ? 2 : 1, word, 1);
   }
   if (!error) (void)PetscOptionsLeftRestore(options, &n, &name, &value);
   if (options) (void)PetscOptionsDestroy(&options);
@@ -269,7 +266,7 @@ static void TypedTakeYaml(Typed *t, Source *from, const char *text, size_t lengt
 /* A file is of YAML by the option that names it, or by its own name. */
 static void TypedReadFile(Typed *t, const char *option, const char *path, const Source *outer) {
   const char *const end = strrchr(path, '.');
-  const PetscBool named = end && (!strcmp(end, ".yaml") || !strcmp(end, ".yml")) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool named = end && (!strcmp(end, ".yaml") || !strcmp(end, ".yml"));
   Source from = {.outer = outer, .option = option, .name = path};
   const char *why = NULL;
   struct stat status;

@@ -23,7 +23,7 @@ static PetscBool OptionIsReadLater(const char *name, PetscBool *viewer) {
     if (!strcasecmp(name, late[k])) return PETSC_TRUE;
   for (size_t k = 0; k < LATER; k++)
     if (strstr(name, later[k])) {
-      *viewer = k < LATER_VIEWERS ? PETSC_TRUE : PETSC_FALSE;
+      *viewer = k < LATER_VIEWERS;
       return PETSC_TRUE;
     }
   return PETSC_FALSE;
@@ -86,7 +86,7 @@ static PetscBool NameIsPart(const char *name, const char *longer) {
   const size_t n = strlen(name) - 1, m = strlen(longer);
   if (n < 3 || m <= n + 1) return PETSC_FALSE;
   if (longer[m - n - 1] == '_' && !strcmp(longer + m - n, name + 1)) return PETSC_TRUE;
-  return strchr(name, '_') && longer[n + 1] == '_' && !strncmp(longer, name, n + 1) ? PETSC_TRUE : PETSC_FALSE;
+  return strchr(name, '_') && longer[n + 1] == '_' && !strncmp(longer, name, n + 1);
 }
 
 /* Number of the first character after the words with which two names begin alike. */

@@ -32,7 +32,7 @@ static PetscErrorCode IndexOpen(AppendedFile *a) {
   if (!a->folder->rank) {
     a->index = FileNew(temporary);
     for (PetscInt t = 0; t < a->count && a->index; t++) IndexPrint(a, t, a->time[t]);
-    done = a->index && !fflush(a->index) && !ferror(a->index) ? PETSC_TRUE : PETSC_FALSE;
+    done = a->index && !fflush(a->index) && !ferror(a->index);
     if (done) done = a->file.failed ? !unlink(temporary) : !rename(temporary, path);
   }
   PetscCall(FolderCheck(a->folder, done, a->index_name));
@@ -83,9 +83,7 @@ static PetscBool IndexRead(FILE *index, PetscInt n, PetscInt *entry, PetscReal *
 static PetscBool EntryRead(int old, PetscInt n, PetscBool single, off_t place, PetscReal values[]) {
   const size_t bytes = (size_t)n * (single ? sizeof(float) : sizeof(*values));
   if (pread(old, values, bytes, place) != (ssize_t)bytes) return PETSC_FALSE;
-  return !single || H5Tconvert(H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, (size_t)n, values, NULL, H5P_DEFAULT) >= 0
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+  return !single || H5Tconvert(H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, (size_t)n, values, NULL, H5P_DEFAULT) >= 0;
 }
 
 /* Copy the first `most` entries into the new file `f`, on rank 0; copied: the number of entries that could be read. An
@@ -117,7 +115,7 @@ static PetscErrorCode EntriesCopy(const AppendedKind *kind, PetscInt most, FILE 
 /* Give the file run.h5.new, which is whole when it has that name, the name run.h5. The index, which is of the old
    run.h5, goes first. */
 static PetscBool AppendedTakeNew(const char fresh[], const char index[], const char path[]) {
-  return !access(fresh, F_OK) && (!unlink(index) || errno == ENOENT) && !rename(fresh, path) ? PETSC_TRUE : PETSC_FALSE;
+  return !access(fresh, F_OK) && (!unlink(index) || errno == ENOENT) && !rename(fresh, path);
 }
 
 /* Make the file anew of its first `count` entries where there is an index. If fewer can be read the file stays as it
@@ -249,7 +247,7 @@ PetscErrorCode AppendedClose(AppendedFile *a, PetscBool *good) {
     AppendedPath(a, ".index", path);
     if (a->index) (void)fclose(a->index);
     if (a->index && !a->file.failed && !a->folder->failed) (void)unlink(path);
-    *good = !a->file.failed || known ? PETSC_TRUE : PETSC_FALSE;
+    *good = !a->file.failed || known;
   }
   a->index = NULL;
   a->open = PETSC_FALSE;

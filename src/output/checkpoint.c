@@ -86,7 +86,7 @@ PetscErrorCode CheckpointTracers(H5File *file, PetscBool write, Scheme s, Tracer
   for (PetscInt k = 0; k < 2 * t->n; k++)
     if (PetscIsInfOrNanReal(t->X[k]) || PetscIsInfOrNanReal(t->U[k])) file->failed = PETSC_TRUE;
   t->t = s->state.t;
-  t->moving = s->state.step > 0 ? PETSC_TRUE : PETSC_FALSE;
+  t->moving = s->state.step > 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,7 +172,7 @@ PetscBool CheckpointChecksum(const char path[], long tail, unsigned *crc, char *
     for (size_t i = 0; i < got; i++) sum = table[(sum ^ block[i]) & 255] ^ (sum >> 8);
     left -= (long)got;
   }
-  const PetscBool read = left == 0 && fread(end, 1, (size_t)tail, f) == (size_t)tail ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool read = left == 0 && fread(end, 1, (size_t)tail, f) == (size_t)tail;
   fclose(f);
   *crc = ~sum;
   return read;
@@ -186,8 +186,8 @@ static PetscBool ChecksumAppend(const char path[]) {
   if (!CheckpointChecksum(path, 0, &crc, none)) return PETSC_FALSE;
   f = fopen(path, "ab");
   if (!f) return PETSC_FALSE;
-  const PetscBool printed = fprintf(f, CHECKPOINT_TAIL, crc) == CHECKPOINT_TAIL_LENGTH ? PETSC_TRUE : PETSC_FALSE;
-  return !fclose(f) && printed ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool printed = fprintf(f, CHECKPOINT_TAIL, crc) == CHECKPOINT_TAIL_LENGTH;
+  return !fclose(f) && printed;
 }
 
 /* Path of the k-th newest checkpoint. */
@@ -210,7 +210,7 @@ static PetscBool CheckpointRotate(const Checkpoint *c, const char temporary[]) {
     if (k > 1 || link(from, to)) (void)rename(from, to);
   }
   CheckpointPath(c->folder, 0, to);
-  return !rename(temporary, to) && !FileSync(c->folder->path) ? PETSC_TRUE : PETSC_FALSE;
+  return !rename(temporary, to) && !FileSync(c->folder->path);
 }
 
 /* k, if the file is the k-th newest checkpoint, as its inode tells; CHECKPOINT_NAMES when it is none of them. */
@@ -235,7 +235,7 @@ PetscErrorCode CheckpointAdopt(const Checkpoint *c, const char restart[]) {
   if (k && k < CHECKPOINT_NAMES) {
     (void)unlink(temporary);
     if (link(restart, temporary) || rename(temporary, newest)) /* without links the file loses its old name */
-      done = !rename(restart, newest) ? PETSC_TRUE : PETSC_FALSE;
+      done = !rename(restart, newest);
     for (PetscInt j = 1; j < k && done; j++) {
       CheckpointPath(c->folder, j, path);
       (void)unlink(path);
@@ -290,7 +290,7 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Tr
   PetscCall(H5FileOpen(c->folder->comm, path, H5_NEW, &file));
   PetscCall(CheckpointWriteAll(&file, s, record, tracers, frames));
   H5FileClose(&file);
-  if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path) ? PETSC_TRUE : PETSC_FALSE;
+  if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path);
   error = FolderCheckOwn(c->folder); /* once more: writing took time */
   if (!c->folder->rank) {
     if (done && !error) done = CheckpointRotate(c, path);

@@ -41,7 +41,7 @@ PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint pr
   FolderPath(folder, name, temporary);
   if (!folder->rank) {
     FILE *f = FileNew(temporary);
-    done = f && !print(f, what) && !ferror(f) ? PETSC_TRUE : PETSC_FALSE;
+    done = f && !print(f, what) && !ferror(f);
     if (f && fclose(f)) done = PETSC_FALSE;
     if (done && (FileSync(temporary) || rename(temporary, path))) done = PETSC_FALSE;
     if (f && !done) (void)unlink(temporary);
@@ -51,7 +51,7 @@ PetscErrorCode FolderWriteText(Folder *folder, const char file[], FolderPrint pr
 }
 
 static PetscBool IsSameFile(const struct stat *a, const struct stat *b) {
-  return a->st_dev == b->st_dev && a->st_ino == b->st_ino ? PETSC_TRUE : PETSC_FALSE;
+  return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
 /* Whether a file lies in the folder. */

@@ -92,7 +92,7 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
 
 PetscBool FramesAreWrapped(Scheme s) {
   const Grid g = s->fluid->grid;
-  return !g->free && !(g->wall[0] && g->wall[1]) ? PETSC_TRUE : PETSC_FALSE;
+  return !g->free && !(g->wall[0] && g->wall[1]);
 }
 
 PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt scheduled, const char restart[]) {
@@ -100,7 +100,7 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0, moving = s->scene->obstacles.moving ? W : 0,
                  n = g->n[0] * g->rows[FIELD_P], tracers = f->tracers->n;
-  const PetscBool single = s->scene->output.precision == PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool single = s->scene->output.precision == PRECISION_SINGLE;
   const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single, "length/time"},
                                 {"/fluid/v", g->n[1], g->n[0], single, "length/time"},
                                 {"/fluid/p", g->n[1], g->n[0], single, "length^2/time^2"},

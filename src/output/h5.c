@@ -142,7 +142,7 @@ void H5Put(H5File *f, const char name[], hid_t type, PetscInt n, const void *val
 
 /* Rank 0 reads the n values of an attribute or, of many, of a dataset. */
 static void RootGet(H5File *f, const char name[], hid_t type, PetscInt n, void *values) {
-  const PetscBool many = n > ATTRIBUTE_NUMBERS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool many = n > ATTRIBUTE_NUMBERS;
   hid_t item = -1, space = -1;
   if (f->rank || f->failed) return;
   H5Try(f, item = many ? H5Dopen2(f->id, name, H5P_DEFAULT) : H5Aopen(f->id, name, H5P_DEFAULT));

@@ -10,7 +10,7 @@ typedef enum { RUN, PAIRS, TOTAL, WORST, MEAN, FIRST, LEAST } RecordKind;
 static const RecordKind RecordKinds[COLUMN_COUNT] = {RECORD_COLUMNS(RECORD_KIND)};
 
 PetscBool RecordIsOwn(int column) {
-  return RecordKinds[column] >= TOTAL ? PETSC_TRUE : PETSC_FALSE;
+  return RecordKinds[column] >= TOTAL;
 }
 
 /* Room for an entry of a line: 24 characters a number and the comma; the longest name and a vesicle's number. */
@@ -100,7 +100,7 @@ static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
   }
   for (PetscInt b = 0; b < curves; b++) {
     const BodyMotion *m = &o->motion[b];
-    const PetscBool moves = m->velocity[0] != 0 || m->velocity[1] != 0 || m->rotation != 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool moves = m->velocity[0] != 0 || m->velocity[1] != 0 || m->rotation != 0;
     if (!o->container[b] || (!s->fluid->steady && !moves)) continue;
     load[b] = s->fluid->steady ? (ObstacleLoad){{0, 0}, 0} : (ObstacleLoad){{NAN, NAN}, NAN};
     for (PetscInt k = 0; k < vesicles + curves; k++)
@@ -143,7 +143,7 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
 
 /* Whether series.csv has a column of its own of each vesicle: not of one vesicle, nor of many. */
 static PetscBool RecordRepeats(const Record *r, int column) {
-  return r->vesicles > 1 && r->vesicles <= RECORD_FEW && RecordIsOwn(column) ? PETSC_TRUE : PETSC_FALSE;
+  return r->vesicles > 1 && r->vesicles <= RECORD_FEW && RecordIsOwn(column);
 }
 
 /* Find where the energy of each force goes, by the name energy_NAME. */
@@ -332,9 +332,7 @@ PetscBool RecordFits(const Record *r, PetscInt step, PetscReal t) {
   for (const char *c = r->header; *c; c++) more += *c == ',';
   for (const char *c = r->text; *c; c++) more -= *c == ',';
   return !more && !r->text[strspn(r->text, "0123456789+-.einf,")] && r->last[COLUMN_STEP] == step &&
-                 r->last[COLUMN_TIME] == t
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+         r->last[COLUMN_TIME] == t;
 }
 
 void RecordParse(Record *r, const char text[]) {

@@ -152,7 +152,7 @@ static PetscErrorCode RestartRecord(Scheme s, H5File *file, const PetscInt total
   PetscCall(H5GetText(file, "series_row", &text));
   RecordParse(record, text);
   PetscCall(PetscFree(text));
-  fits = file->rank || file->failed || RecordFits(record, s->state.step, s->state.t) ? PETSC_TRUE : PETSC_FALSE;
+  fits = file->rank || file->failed || RecordFits(record, s->state.step, s->state.t);
   PetscCallMPI(MPI_Bcast(&fits, 1, MPIU_BOOL, 0, file->comm));
   PetvesCheck(fits, s->scene->comm,
               "-restart %s: its row of series.csv is not that of its step; allowed: a checkpoint.h5 of petves",

@@ -14,7 +14,7 @@ PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], con
   if (!folder->rank) {
     FILE *f = FileNew(temporary);
     if (f) fprintf(f, *row ? "%s\n%s\n" : "%s\n", header, row);
-    written = f && !fclose(f) ? PETSC_TRUE : PETSC_FALSE;
+    written = f && !fclose(f);
   }
   PetscCall(FolderCheck(folder, written, SERIES));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -94,5 +94,5 @@ PetscBool SeriesClose(Series *s) {
   FILE *file = s->file;
   const int lost = file && ferror(file); /* a row is lost */
   s->file = NULL;
-  return !file || (!fclose(file) && !lost) ? PETSC_TRUE : PETSC_FALSE;
+  return !file || (!fclose(file) && !lost);
 }

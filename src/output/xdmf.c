@@ -162,9 +162,9 @@ static PetscBool XdmfOverwrite(int file, off_t place, const char text[], size_t 
   PetscBool done;
   if (!padded) return PETSC_FALSE;
   (void)snprintf(padded, all + 1, "%-*s", (int)all, text);
-  done = pwrite(file, padded, all, place) == (ssize_t)all ? PETSC_TRUE : PETSC_FALSE;
+  done = pwrite(file, padded, all, place) == (ssize_t)all;
   free(padded);
-  if (done) return new_size >= old_size || !ftruncate(file, new_size) ? PETSC_TRUE : PETSC_FALSE;
+  if (done) return new_size >= old_size || !ftruncate(file, new_size);
   if (pwrite(file, XDMF_CLOSING, strlen(XDMF_CLOSING), place) == (ssize_t)strlen(XDMF_CLOSING))
     (void)!ftruncate(file, place + (off_t)strlen(XDMF_CLOSING));
   return PETSC_FALSE;
@@ -183,8 +183,7 @@ static PetscBool XdmfAppend(Xdmf *x, PetscInt frame, PetscReal time) {
   fprintf(f, XDMF_CLOSING);
   if (!fclose(f)) {
     (void)snprintf(count, sizeof(count), "%*d", XDMF_COUNT_WIDTH, (int)frame + 1);
-    done = pwrite(x->file, count, XDMF_COUNT_WIDTH, (off_t)strlen(XDMF_HEAD)) == XDMF_COUNT_WIDTH ? PETSC_TRUE
-                                                                                                  : PETSC_FALSE;
+    done = pwrite(x->file, count, XDMF_COUNT_WIDTH, (off_t)strlen(XDMF_HEAD)) == XDMF_COUNT_WIDTH;
     if (done) done = XdmfOverwrite(x->file, place, text, size, x->end);
     x->last = place;
     x->end = place + (off_t)(size - strlen(XDMF_CLOSING));
@@ -208,5 +207,5 @@ PetscErrorCode XdmfWrite(Xdmf *x, AppendedFile *frames) {
 }
 
 PetscBool XdmfClose(Xdmf *x) {
-  return !x->folder || x->file < 0 || !close(x->file) ? PETSC_TRUE : PETSC_FALSE;
+  return !x->folder || x->file < 0 || !close(x->file);
 }

@@ -49,10 +49,10 @@ static inline PetscBool AgeStepChanged(PetscReal made, PetscReal now, PetscReal 
   return made == now || (now < ratio * made && made < ratio * now) ? PETSC_FALSE : PETSC_TRUE;
 }
 static inline PetscBool AgeIsOver(const Age *a, PetscReal now, PetscReal ratio, PetscReal cost) {
-  return a->excess > cost || a->solves >= a->most || AgeStepChanged(a->made_for, now, ratio) ? PETSC_TRUE : PETSC_FALSE;
+  return a->excess > cost || a->solves >= a->most || AgeStepChanged(a->made_for, now, ratio);
 }
 static inline PetscBool AgeIsFar(const Age *a, PetscInt its) {
-  return a->solves > 0 && its == a->fewest + 5 ? PETSC_TRUE : PETSC_FALSE;
+  return a->solves > 0 && its == a->fewest + 5;
 }
 
 /* AgeCost - of so many dense blocks of n markers each, made anew, in iterations on so many cells; w: markers of the

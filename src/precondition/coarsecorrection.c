@@ -79,7 +79,7 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
 
 /* Whether a block joins two vesicles. */
 static PetscBool JoinsVesicles(CoarseCorrection s, const NearBlock *b) {
-  return !NearBlockIsSelf(b) && PetscMax(b->row, b->column) < s->mobility->bodies->vesicles ? PETSC_TRUE : PETSC_FALSE;
+  return !NearBlockIsSelf(b) && PetscMax(b->row, b->column) < s->mobility->bodies->vesicles;
 }
 
 PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {

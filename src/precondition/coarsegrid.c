@@ -36,7 +36,7 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   PetscFunctionBeginUser;
   *out = NULL;
   /* the stream function does not serve walls in x alone */
-  const PetscBool serves = run->bc[0] == BC_PERIODIC || run->bc[1] != BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool serves = run->bc[0] == BC_PERIODIC || run->bc[1] != BC_PERIODIC;
   const PetscInt times = FluidSpecIsFree(run) || !serves ? 0 : CoarseTimes(run);
   if (!times) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&c));

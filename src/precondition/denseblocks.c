@@ -31,7 +31,7 @@ PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
   PetscCall(PetscNew(&b));
   *out = b;
   b->coupling = coupling;
-  b->together = l->M <= DENSE_TOGETHER ? PETSC_TRUE : PETSC_FALSE;
+  b->together = l->M <= DENSE_TOGETHER;
   b->root = LayoutOwner(l, 0);
   b->count = b->together ? l->rank == b->root : l->end - l->own;
   PetscCall(PetscCalloc2(b->count, &b->block, b->count, &b->frame));
@@ -40,8 +40,7 @@ PetscErrorCode DenseBlocksCreate(Coupling coupling, DenseBlocks *out) {
     BlockFrame *f = &b->frame[k];
     PetscCall(DenseBlockCreate(coupling->membrane, coupling->forces, coupling->fluid->grid->h, v,
                                b->together ? l->bodies : v + 1, &b->block[k]));
-    f->turns = b->block[k].law->end - v == 1 && !(b->together && coupling->bodies->obstacles) ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+    f->turns = b->block[k].law->end - v == 1 && !(b->together && coupling->bodies->obstacles);
     const PetscInt n = f->turns ? b->block[k].law->n : 0;
     PetscCall(PetscMalloc3(2 * n, &f->X, 2 * n, &f->U, n, &f->sigma));
   }

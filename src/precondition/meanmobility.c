@@ -7,8 +7,7 @@
 /* Whether the mobility between walls can be had from the box part's grids. */
 static PetscBool TakesBox(Coupling c) {
   const Grid g = c->fluid->grid;
-  return c->fluid->steady && c->mobility->near && c->mobility->near->box && (g->wall[0] || g->wall[1]) ? PETSC_TRUE
-                                                                                                       : PETSC_FALSE;
+  return c->fluid->steady && c->mobility->near && c->mobility->near->box && (g->wall[0] || g->wall[1]);
 }
 
 PetscErrorCode MeanMobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, MeanMobility *out) {
@@ -47,7 +46,7 @@ PetscErrorCode MeanMobilitySetUp(MeanMobility m, PetscReal alpha) {
 static PetscBool IsTableNear(MeanMobility m, const PetscReal cells[2]) {
   for (int dir = 0; dir < 2; dir++)
     if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) return PETSC_FALSE;
-  return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near ? PETSC_TRUE : PETSC_FALSE;
+  return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near;
 }
 
 /* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
@@ -127,9 +126,7 @@ PetscErrorCode MeanMobilityAssemble(MeanMobility m, const MarkerRange *rows, con
   } else
     PetscFunctionReturn(PETSC_SUCCESS);
   /* where all pairs of markers among themselves are made, a pair and its mirror image are one another's transposes */
-  const PetscBool same = rows->first == columns->first && end - begin == columns->n && rows->n == columns->n
-                             ? PETSC_TRUE
-                             : PETSC_FALSE;
+  const PetscBool same = rows->first == columns->first && end - begin == columns->n && rows->n == columns->n;
   for (PetscInt j = part; j < columns->n; j += parts)
     for (PetscInt i = same ? j : begin; i < end; i++) {
       PetscReal one[4];

@@ -60,10 +60,8 @@ static PetscBool AreAlike(Coupling c, PetscInt v, PetscInt w) {
   const Membrane m = c->membrane;
   if (c->mobility->contrast && c->mobility->contrast->ratio[v] != c->mobility->contrast->ratio[w]) return PETSC_FALSE;
   return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
-                 PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w] &&
-                 m->modulus[v] == m->modulus[w]
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+         PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w] &&
+         m->modulus[v] == m->modulus[w];
 }
 
 /* What of a shape's distance is due to its label speed, in the mode in which that counts most beside the I and the
@@ -111,7 +109,7 @@ static PetscBool ChooseShape(SharedShapes s, PetscInt v, PetscInt first) {
     s->of[v] = k;
     *own = fit;
   }
-  return s->of[v] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  return s->of[v] >= 0;
 }
 
 /* A shape, zero but for its X. */
@@ -120,9 +118,7 @@ static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading
   PetscFunctionBeginUser;
   PetscCall(ArrayReserve((size_t)s->count + 1, &s->room, &s->shape));
   const PetscInt n = LayoutCount(m->layout, like);
-  const PetscBool jumps = s->coupling->mobility->contrast && s->coupling->mobility->contrast->ratio[like] != 1
-                              ? PETSC_TRUE
-                              : PETSC_FALSE;
+  const PetscBool jumps = s->coupling->mobility->contrast && s->coupling->mobility->contrast->ratio[like] != 1;
   SharedShape *q = &s->shape[s->count++];
   *q = (SharedShape){.like = like,
                      .treading = treading,
@@ -248,9 +244,7 @@ void SharedShapesGetMemory(SharedShapes s, PetscReal memory[]) {
 
 /* Whether a number from a file is that of a vesicle like v. */
 static PetscBool IsNumberAlike(Coupling c, PetscInt v, PetscReal number) {
-  return number >= 0 && number < (PetscReal)c->membrane->layout->bodies && AreAlike(c, v, (PetscInt)number)
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+  return number >= 0 && number < (PetscReal)c->membrane->layout->bodies && AreAlike(c, v, (PetscInt)number);
 }
 
 PetscErrorCode SharedShapesSetMemory(SharedShapes s, const PetscReal memory[], PetscBool *valid) {

@@ -9,7 +9,7 @@ static PetscInt LastRows(PetscInt n, PetscInt ranks) {
 }
 
 PetscBool GridFits(PetscInt n, PetscInt ranks) {
-  return ranks == 1 || LastRows(n, ranks) >= LEAST_ROWS ? PETSC_TRUE : PETSC_FALSE;
+  return ranks == 1 || LastRows(n, ranks) >= LEAST_ROWS;
 }
 
 /* All ranks but the last have block rows; stop where the last one then has too few, and say what works. */

@@ -81,7 +81,7 @@ PetscErrorCode GridClear(Grid g, const GridWindow *window, Vec w) {
   PetscFunctionBeginUser;
   PetscCall(VecGetLocalSize(w, &size));
   PetscCall(VecGetArray(w, &a));
-  const PetscBool pressure = size == g->columns[FIELD_P] * g->rows[FIELD_P] ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool pressure = size == g->columns[FIELD_P] * g->rows[FIELD_P];
   for (int f = pressure ? FIELD_P : FIELD_U; f <= (pressure ? FIELD_P : FIELD_V); f++) {
     const PetscInt rows = Clip(window->rows, g->rows[f], &row), n = Clip(window->columns, g->columns[f], &column);
     for (PetscInt j = row; j < row + rows; j++) PetscCall(PetscArrayzero(a + start[f] + j * g->columns[f] + column, n));
@@ -194,7 +194,7 @@ PetscErrorCode GridAssemble(Grid g, Field f, PetscReal a0, PetscReal nu, Mat *A)
       for (int k = 0; k < 4; k++) {
         const int dir = k / 2;
         PetscInt c = i + di[k], r = j + dj[k];
-        const PetscBool outside = c < 0 || c >= n || r < 0 || r >= all ? PETSC_TRUE : PETSC_FALSE;
+        const PetscBool outside = c < 0 || c >= n || r < 0 || r >= all;
         if (outside && g->wall[dir]) {
           diagonal -= off * GridWallFactor(f, dir);
           continue;

@@ -92,7 +92,7 @@ static PetscReal Sheared(const Convection c, int f, PetscInt k, const PetscReal 
 
 PetscErrorCode ConvectionAdd(Convection c, PetscReal alpha, Vec w, Forcing *forcing) {
   const Grid g = c->fluid->grid;
-  const PetscBool flow = c->flow.type != FLOW_QUIESCENT ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool flow = c->flow.type != FLOW_QUIESCENT;
   PetscScalar *a;
   PetscReal X[2];
   PetscFunctionBeginUser;

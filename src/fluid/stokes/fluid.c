@@ -143,15 +143,15 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   *out = f;
   PetscCall(GridCreate(spec, &f->grid));
   f->nu = spec->nu;
-  f->steady = spec->inertia == INERTIA_NONE ? PETSC_TRUE : PETSC_FALSE;
-  f->zero_flux = spec->drive == DRIVE_FLUX ? PETSC_TRUE : PETSC_FALSE;
-  f->held = spec->held && spec->bc[0] == BC_PERIODIC && spec->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  f->steady = spec->inertia == INERTIA_NONE;
+  f->zero_flux = spec->drive == DRIVE_FLUX;
+  f->held = spec->held && spec->bc[0] == BC_PERIODIC && spec->bc[1] == BC_PERIODIC;
   f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
   if (!f->grid->free) PetscCall(CreateSolvers(spec, f));
   PetscCall(FluidSetTimeCoefficient(f, 1 / spec->dt));
-  f->total = spec->form == FORM_TOTAL ? PETSC_TRUE : PETSC_FALSE;
+  f->total = spec->form == FORM_TOTAL;
   if (f->total) PetscCall(CreateWallData(spec, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -41,7 +41,7 @@ PetscErrorCode ForcingClear(Forcing *f) {
 
 /* A range that holds both; an empty one has no place. */
 static void Unite(PetscInt range[2], const PetscInt other[2]) {
-  const PetscBool empty = range[0] >= range[1] ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool empty = range[0] >= range[1];
   if (other[0] >= other[1]) return;
   range[0] = empty ? other[0] : PetscMin(range[0], other[0]);
   range[1] = empty ? other[1] : PetscMax(range[1], other[1]);

@@ -67,7 +67,7 @@ static void SetDecays(PetscReal theta_1, PetscReal theta_2, ModeDecays *m) {
   m->t[1][0] = 1;
   m->reach = m->n + 3;
   for (PetscInt k = 1; k < m->n + 3; k++) {
-    const PetscBool near = m->reach > k ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool near = m->reach > k;
     power *= r1;
     m->t[0][k] = near ? power + r2 * m->t[0][k - 1] : 0;
     m->t[1][k] = near ? r2 * m->t[1][k - 1] : 0;

@@ -85,8 +85,7 @@ static void MeasureRow(Stream s, const StreamRows *rows, PetscInt j, const Petsc
   const PetscReal mean = s->means[j] + StreamGiven(rows, FIELD_U, at);
   StreamMeterSlip(s->meter, j, mean);
   if (!s->flow)
-    StreamMeterSquares(s->meter, j, row, mean, j < s->slabs->rows ? PETSC_TRUE : PETSC_FALSE,
-                       s->mean_v + StreamGiven(rows, FIELD_V, at));
+    StreamMeterSquares(s->meter, j, row, mean, j < s->slabs->rows, s->mean_v + StreamGiven(rows, FIELD_V, at));
 }
 
 /* The means of row j into the flow, or added to it. */
@@ -100,7 +99,7 @@ static void FlowMeans(Stream s, const StreamRows *rows, PetscInt j) {
 void StreamScatter(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
   const PetscInt nodes = s->slabs->rows, first = rows->wanted[0], end = rows->wanted[1];
-  const PetscBool squares = measured && !s->flow ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool squares = measured && !s->flow;
   const PetscScalar *high = s->zero;
   StreamBeginDown(s);
   if (nodes == g->rows[FIELD_U]) { /* not on the upper wall, where chi = 0 */
@@ -116,7 +115,7 @@ void StreamScatter(Stream s, const StreamRows *rows, PetscBool measured) {
       low = s->zero;
       if (squares) (void)StreamMeterNodes(s->meter, 0);
     }
-    const PetscBool wanted = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool wanted = j >= first && j < end;
     if (wanted) VelocityRows(s, rows, measured, j, low, high);
     if (measured) MeasureRow(s, rows, j, wanted ? s->curl : NULL);
     if (s->flow) FlowMeans(s, rows, j);

@@ -80,7 +80,7 @@ void StreamGather(Stream s, const StreamRows *rows, PetscBool measured) {
   s->mean_v = 0;
   (void)PetscArrayzero(q->state, 2 * w);
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) {
-    const PetscBool forced = j >= first && j < end ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool forced = j >= first && j < end;
     if (forced && !low) low = rows->force(rows->ctx, FIELD_U, j, s->row[j % 2]);
     const PetscReal sum = s->mean ? (forced ? StreamRowSum(n, low) : 0) + PastSum(s, rows, j, 0) : 0;
     if (s->mean) TridiagonalUp(s->mean, j, &sum);

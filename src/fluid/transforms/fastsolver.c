@@ -79,7 +79,7 @@ PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0, PetscReal n
   if (a0 == s->a0 && nu == s->nu) PetscFunctionReturn(PETSC_SUCCESS);
   s->a0 = a0;
   s->nu = nu;
-  s->singular = a0 == 0 && (s->field == FIELD_P || (!s->grid->wall[0] && !s->grid->wall[1])) ? PETSC_TRUE : PETSC_FALSE;
+  s->singular = a0 == 0 && (s->field == FIELD_P || (!s->grid->wall[0] && !s->grid->wall[1]));
   if (s->setcoefficients) PetscCall(s->setcoefficients(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -173,7 +173,7 @@ static PetscReal Eigenvalue(PetscReal argument) {
 /* Periodic, and walls half a cell off. */
 static PetscErrorCode CreateWhole(RowTransform t) {
   const PetscInt n = t->n;
-  const PetscBool periodic = t->sign == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool periodic = t->sign == 0;
   PetscFunctionBeginUser;
   PetscCall(FourierCreate(n, periodic ? PETSC_FALSE : PETSC_TRUE, t->line, t->modes, &t->f[0]));
   for (PetscInt k = 0; k < t->width; k++) {
@@ -215,7 +215,7 @@ static PetscErrorCode CreateSines(RowTransform t) {
 
 PetscErrorCode RowTransformCreate(Grid g, Field field, RowTransform *out) {
   const PetscReal c = GridWallFactor(field, 0);
-  const PetscBool sines = g->wall[0] && c == 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool sines = g->wall[0] && c == 0;
   RowTransform t;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&t));

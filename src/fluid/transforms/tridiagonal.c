@@ -82,7 +82,7 @@ PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal
   d->nu = nu;
   d->singular = singular;
   for (PetscInt k = 0; k < f->modes; k++) {
-    const PetscBool zero = singular && k == 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool zero = singular && k == 0;
     const PetscReal theta = zero ? INFINITY : ModeTheta(f->lambda[k] + a0 * h2 / nu), r = PetscExpReal(-theta);
     const PetscReal bottom = c > 0 ? -expm1(-theta) : c - r, top = c > 0 ? -1 / expm1(-theta) : c / (1 - r * c);
     ModeFactorsSet(f, k, (PetscReal[]){theta, INFINITY}, zero ? 0 : f->scale[k] * r * h2 / nu,
