@@ -78,9 +78,8 @@ typedef struct {
 /* Orders and kinds are constants where these functions are called. */
 #define IMAGE_INLINE __attribute__((always_inline)) static inline
 
-/* ImageTermsMake - for orders up to this one. ImageProducts - monomials times powers of an order with this n0, their
-   real (0) or imaginary part (1). ImageSumOf - of an order's. ImageWithin - which pairs are within that many cells.
-   ImageSums - an order's sums of all parts. ImageAddOrder - of an order, added where meant. ImageOrders - of the first
+/* ImageTermsMake - for orders up to this one. ImageWithin - which pairs are within that many cells. ImageSums - an
+   order's sums of all parts. ImageAddOrder - of an order, added where meant. ImageOrders - of the first
    order to the last one, x, a and b being at[3]. ImageFarSums - of all orders that count, with their terms. Not
    collective. */
 IMAGE_INLINE void ImageTermsMake(const int order, Lanes x, Lanes a, Lanes b, ImageTerms *t) {
@@ -98,15 +97,6 @@ IMAGE_INLINE void ImageTermsMake(const int order, Lanes x, Lanes a, Lanes b, Ima
     w[1] = (n + 1) * (w[0] * v + w[1] * u);
     w[0] = next;
   }
-}
-static inline void ImageProducts(const int order, const int n0, const int sine, const ImageTerms *t, Lanes term[]) {
-  for (int k = 0; k < image_monomials[order]; k++)
-    term[k] = t->monomial[k] * t->power[n0 + 2 * order + image_degree[k]][sine];
-}
-static inline Lanes ImageSumOf(const int order, const Lanes c[], const Lanes term[]) {
-  Lanes sum = c[0] * term[0];
-  for (int k = 1; k < image_monomials[order]; k++) sum += c[k] * term[k];
-  return sum;
 }
 static inline LanesBits ImageWithin(const int cells, Lanes x, Lanes a, Lanes b) {
   return (LanesBits)(x * x + (a + b) * (a + b) < cells * cells);

@@ -16,7 +16,7 @@
 #include "layers/imagetable.h"
 #include "base/lanes.h"
 #include "numerics/blas.h"
-#include "layers/latticegreen.h"
+#include <petscdt.h>
 
 /* The numbers of the mode with the wave number theta. */
 static ImageMode ImageModeMake(PetscReal theta) {
@@ -70,7 +70,7 @@ PetscErrorCode ImageBlockFill(const ImageBlock *b, PetscReal value[IMAGE_ROWS][I
   PetscReal theta[IMAGE_NODES], weight[IMAGE_NODES];
   ImageNodes *a;
   PetscFunctionBeginUser;
-  GaussLegendre(IMAGE_NODES, theta, weight);
+  PetscCall(PetscDTGaussQuadrature(IMAGE_NODES, 0, PETSC_PI, theta, weight));
   PetscCall(PetscMalloc1(1, &a));
   for (int q = 0; q < IMAGE_NODES; q++) ImageNodeSet(b, theta[q], weight[q], q, a);
   for (int row = 0; row < IMAGE_ROWS; row++)

@@ -13,32 +13,12 @@
 
    vu odd in both offsets. The integrands are analytic: Gauss-Legendre converges to rounding. */
 #include "layers/latticegreen.h"
+#include <petscdt.h>
 
 #define EULER_GAMMA 0.57721566490153286061
 
 PetscReal LatticeConstant(void) {
   return (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
-}
-
-/* Newton on the Legendre polynomial. */
-void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]) {
-  for (PetscInt k = 0; k < n; k++) {
-    PetscReal x = PetscCosReal(PETSC_PI * (k + 0.75) / (n + 0.5)), slope = 1;
-    for (int it = 0; it < 100; it++) {
-      PetscReal p = 1, before = 0, step;
-      for (PetscInt j = 0; j < n; j++) { /* (j + 1) P_{j+1} = (2j + 1) x P_j - j P_{j-1} */
-        const PetscReal next = ((2 * j + 1) * x * p - j * before) / (j + 1);
-        before = p;
-        p = next;
-      }
-      slope = n * (x * p - before) / (x * x - 1);
-      step = p / slope;
-      x -= step;
-      if (PetscAbsReal(step) < 1e-15) break;
-    }
-    theta[k] = 0.5 * PETSC_PI * (1 - x);
-    weight[k] = PETSC_PI / ((1 - x * x) * slope * slope);
-  }
 }
 
 /* (g1 - s g2)(j) and g2(j) for j = 0 .. n. */
@@ -57,7 +37,7 @@ static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   PetscReal *theta, *weight, *cosine, *sine, *along, *square;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc6(nodes, &theta, nodes, &weight, n, &cosine, n, &sine, n + 1, &along, n + 1, &square));
-  GaussLegendre(nodes, theta, weight);
+  PetscCall(PetscDTGaussQuadrature(nodes, 0, PETSC_PI, theta, weight));
   PetscCall(PetscArrayzero(vu, n * n));
   for (PetscInt k = 0; k < n * n; k++) uu[k] = LatticeConstant();
   for (PetscInt q = 0; q < nodes; q++) {
@@ -108,7 +88,7 @@ static PetscErrorCode PressureQuadrant(PetscInt reach, PetscReal quadrant[]) {
   PetscReal *theta, *weight, *sine;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(nodes, &theta, nodes, &weight, n, &sine));
-  GaussLegendre(nodes, theta, weight);
+  PetscCall(PetscDTGaussQuadrature(nodes, 0, PETSC_PI, theta, weight));
   PetscCall(PetscArrayzero(quadrant, n * n));
   for (PetscInt q = 0; q < nodes; q++) {
     const PetscReal half = PetscSinReal(0.5 * theta[q]), mu = 2 * PetscAsinhReal(half);

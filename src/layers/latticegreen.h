@@ -18,10 +18,8 @@ PETSC_EXTERN PetscErrorCode LatticePressure(PetscInt reach, OffsetTable *table);
    diagonal and table/nu off it. Not collective. */
 PETSC_EXTERN PetscErrorCode LatticeStokeslet(PetscInt reach, OffsetTable *table);
 
-/* LatticeConstant - what uu has besides its integral. GaussLegendre - n nodes and weights on (0, pi). Not collective.
- */
+/* LatticeConstant - what uu has besides its integral. Not collective. */
 PETSC_EXTERN PetscReal LatticeConstant(void);
-PETSC_EXTERN void GaussLegendre(PetscInt n, PetscReal theta[], PetscReal weight[]);
 
 /* LatticeDipoles - velocity along x (table[0]) and y (table[1]) at a face, of a unit tensor part (value[DipolePart]),
    for offsets up to `reach` cells, entry of the face minus entry of the part: its force -DIV T and its source tr T/2.

@@ -16,6 +16,7 @@
    theta are the forms (imageform.h, n0 = -1): p is Blake's image, so what is left of it is minus the orders above. */
 #include "layers/latticegreen.h"
 #include "layers/pairchunk.h"
+#include <petscdt.h>
 
 static void StokesletPressure(Lanes x, Lanes y, const Lanes N[2], Lanes P[2]) {
   const Lanes over = (0.5 / PETSC_PI) / (x * x + y * y);
@@ -94,7 +95,7 @@ static void StokesletPsi(const ImageMode *m, int source, int j, PetscReal psi[IM
 static PetscErrorCode StokesletImageFill(const OffsetTable *lattice, ImageTable *t) {
   PetscReal theta[IMAGE_NODES], weight[IMAGE_NODES], level = -LatticeConstant();
   PetscFunctionBeginUser;
-  GaussLegendre(IMAGE_NODES, theta, weight);
+  PetscCall(PetscDTGaussQuadrature(IMAGE_NODES, 0, PETSC_PI, theta, weight));
   for (int q = 0; q < IMAGE_NODES; q++) level += weight[q] / (4 * PETSC_PI * theta[q]);
   const ImageBlock block[OFFSET_COUNT] = {
       [OFFSET_UU] = {StokesletPsi, lattice, OFFSET_UU, .level = level},
