@@ -1,174 +1,82 @@
-/* A dipole's part has weights b_x b_y. In each run of faces its column of weights is summed first, which leaves one
-   line of the table's numbers, then its row; of the parts the second sums make the answers to J_x and J_y. */
 #include "layers/dipolefaces.h"
 
-enum { U_ROWS = 4, U_VECTORS = 2, V_ROWS = 5 };
-
-/* From the first to the last face that is read in each row, a component's runs. */
-static PetscErrorCode MakeRuns(PetscInt n, const PaddedStencil stencil[], int c, DipoleFaces *f) {
-  PetscInt low[2] = {PETSC_MAX_INT, PETSC_MAX_INT}, high[2] = {PETSC_MIN_INT, PETSC_MIN_INT}, *end;
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++)
-    for (int dir = 0; dir < 2; dir++) {
-      const PaddedStencil *s = &stencil[2 * k + c];
-      low[dir] = PetscMin(low[dir], s->first[dir]);
-      high[dir] = PetscMax(high[dir], s->first[dir] + s->n[dir]);
-    }
-  f->stride[c] = high[0] - low[0] + 2 * LANES;
-  f->runs[c] = high[1] - low[1];
-  PetscCall(PetscMalloc2(f->runs[c], &f->run[c], n, &f->at[c]));
-  PetscCall(PetscCalloc1(f->runs[c], &end));
-  for (PetscInt r = 0; r < f->runs[c]; r++) f->run[c][r] = (FaceRun){.row = low[1] + r, .first = high[0]};
-  for (PetscInt k = 0; k < n; k++) {
-    const PaddedStencil *s = &stencil[2 * k + c];
-    const PetscInt row = s->first[1] - low[1];
-    f->at[c][k] = row * f->stride[c] + s->first[0] - low[0];
-    for (PetscInt r = row; r < row + s->n[1]; r++) {
-      f->run[c][r].first = PetscMin(f->run[c][r].first, s->first[0]);
-      end[r] = PetscMax(end[r], s->first[0] + s->n[0] - low[0]);
-    }
-  }
-  for (PetscInt r = 0, line = 0; r < f->runs[c]; r++) {
-    FaceRun *run = &f->run[c][r];
-    run->at = r * f->stride[c] + run->first - low[0];
-    run->vectors = PetscMax(0, (end[r] - (run->first - low[0]) + LANES - 1) / LANES);
-    run->line = line;
-    line += (run->vectors + 2) * LANES;
-    f->vectors += run->vectors;
-  }
-  PetscCall(PetscFree(end));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode DipoleFacesCreate(PetscInt n, const PaddedStencil stencil[], DipoleFaces *f) {
-  PetscInt room = 0, lines = 0;
+  PetscInt room = 0;
   PetscFunctionBeginUser;
-  *f = (DipoleFaces){.n = n};
-  for (int c = 0; c < 2; c++) PetscCall(MakeRuns(n, stencil, c, f));
+  *f = (DipoleFaces){.n = n, .stencil = stencil};
   for (int c = 0; c < 2; c++) {
-    const FaceRun *last = &f->run[c][f->runs[c] - 1];
-    room = PetscMax(room, (f->runs[c] + 1) * f->stride[c]);
-    lines = PetscMax(lines, last->line + (last->vectors + 2) * LANES);
+    PetscInt *low = f->first[c], high[2] = {PETSC_MIN_INT, PETSC_MIN_INT};
+    low[0] = low[1] = PETSC_MAX_INT;
+    for (PetscInt k = 0; k < 2 * n; k++) {
+      const PaddedStencil *s = &stencil[k - k % 2 + c];
+      low[k % 2] = PetscMin(low[k % 2], s->first[k % 2]);
+      high[k % 2] = PetscMax(high[k % 2], s->first[k % 2] + s->n[k % 2]);
+    }
+    f->rows[c] = high[1] - low[1];
+    f->columns[c] = (high[0] - low[0] + LANES - 1) / LANES * LANES;
+    f->stride[c] = f->columns[c] + LANES;
+    room = PetscMax(room, f->stride[c] * (f->rows[c] + 1));
   }
-  PetscCall(
-      PetscMalloc4(DIPOLE_FACE_WEIGHTS * n, &f->weight, lines, &f->line[0], lines, &f->line[1], lines, &f->line[2]));
-  PetscCall(PetscCalloc2(room, &f->field[0], room, &f->field[1])); /* beside the runs weights are zero */
-  for (PetscInt k = 0; k < n; k++) {
-    const PaddedStencil *u = &stencil[2 * k], *v = &stencil[2 * k + 1];
-    Lanes *w = f->weight + DIPOLE_FACE_WEIGHTS * k;
-    for (int r = 0; r < U_ROWS * U_VECTORS; r++)
-      w[r] = u->weight[1][KERNEL_MAX_POINTS + r / U_VECTORS] *
-             LanesAt(u->weight[0] + KERNEL_MAX_POINTS + r % U_VECTORS * LANES);
-    for (int r = 0; r < V_ROWS; r++)
-      w[U_ROWS * U_VECTORS + r] = v->weight[1][KERNEL_MAX_POINTS + r] * LanesAt(v->weight[0] + KERNEL_MAX_POINTS);
-  }
+  PetscCall(PetscCalloc2(room, &f->field[0], room, &f->field[1])); /* behind the last face weights are zero */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode DipoleFacesDestroy(DipoleFaces *f) {
   PetscFunctionBeginUser;
-  for (int c = 0; c < 2; c++) PetscCall(PetscFree2(f->run[c], f->at[c]));
-  PetscCall(PetscFree4(f->weight, f->line[0], f->line[1], f->line[2]));
   PetscCall(PetscFree2(f->field[0], f->field[1]));
-  *f = (DipoleFaces){0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part's column of weights, and where its table has the entry that the first of them takes at a face (0, 0). */
-static inline const PetscReal *Column(const int n, const OffsetTable *t, int part, const PaddedStencil *s,
-                                      const PetscInt cells[2], Lanes w[KERNEL_MAX_POINTS]) {
-  const PetscInt width = 2 * t->size[0] + 1, x = t->size[0] - s->first[0] - (s->n[0] - 1) + cells[0],
-                 y = t->size[1] - s->first[1] + cells[1];
-  for (int j = 0; j < n; j++) w[j] = s->weight[1][KERNEL_MAX_POINTS + j] + (Lanes){0};
-  return t->value[part] + y * width + x;
-}
-
-/* So many numbers of a line: SUM w_j at[-j width]. */
-static inline void ColumnSums(const int n, const Lanes w[], PetscInt width, const PetscReal *at, PetscInt count,
-                              PetscReal *line) {
+/* What a unit part of nx x ny weights gives on `count` faces from `face` on along x, whole vectors: its column of
+   weights is summed first, which leaves one line of the table's numbers, then its row. */
+static inline void PartRow(const int nx, const int ny, const OffsetTable *t, int part, const PaddedStencil *s,
+                           const PetscInt face[2], PetscInt count, PetscReal sum[]) {
+  const PetscInt width = 2 * t->size[0] + 1, x = t->size[0] + face[0] - s->first[0] - (nx - 1),
+                 y = t->size[1] + face[1] - s->first[1];
+  const PetscReal *at = t->value[part] + y * width + x, *wx = s->weight[0] + KERNEL_MAX_POINTS,
+                  *wy = s->weight[1] + KERNEL_MAX_POINTS;
+  PetscReal line[STENCIL_ROW + 2 * LANES];
+  for (PetscInt q = 0; q < count + (nx + LANES - 2) / LANES * LANES; q += LANES) {
+    Lanes all = wy[0] * LanesAt(at + q);
+    for (int j = 1; j < ny; j++) all += wy[j] * LanesAt(at + q - j * width);
+    LanesPut(all, line + q);
+  }
   for (PetscInt q = 0; q < count; q += LANES) {
-    Lanes sum = w[0] * LanesAt(at + q);
-    for (int j = 1; j < n; j++) sum += w[j] * LanesAt(at + q - j * width);
-    LanesPut(sum, line + q);
+    Lanes all = wx[nx - 1] * LanesAt(line + q);
+    for (int k = 1; k < nx; k++) all += wx[nx - 1 - k] * LanesAt(line + q + k);
+    LanesPut(all, sum + q);
   }
 }
 
-/* All runs' lines, with as much behind them as their rows of weights are long. */
-static void SumColumns(const DipoleFaces *f, int c, const OffsetTable *t, const PaddedStencil dipole[DIPOLE_COUNT],
-                       const PetscInt cells[2]) {
-  const PetscInt width = 2 * t->size[0] + 1, runs = f->runs[c];
-  PetscReal *const lx = f->line[DIPOLE_XX], *const ly = f->line[DIPOLE_YY], *const lxy = f->line[DIPOLE_XY];
-  Lanes xx[KERNEL_MAX_POINTS], yy[KERNEL_MAX_POINTS], xy[KERNEL_MAX_POINTS];
-  const PetscReal *tx = Column(4, t, DIPOLE_XX, &dipole[DIPOLE_XX], cells, xx);
-  const PetscReal *ty = Column(6, t, DIPOLE_YY, &dipole[DIPOLE_YY], cells, yy);
-  const PetscReal *txy = Column(5, t, DIPOLE_XY, &dipole[DIPOLE_XY], cells, xy);
-  for (const FaceRun *run = f->run[c]; run < f->run[c] + runs; run++) {
-    const PetscInt at = run->row * width + run->first, line = run->line, count = (run->vectors + 1) * LANES;
-    if (!run->vectors) continue;
-    ColumnSums(4, xx, width, tx + at, count + LANES, lx + line);
-    ColumnSums(6, yy, width, ty + at, count, ly + line);
-    ColumnSums(5, xy, width, txy + at, count, lxy + line);
-  }
-}
-
-/* A part's row of weights times a factor, turned. */
-static inline void Turned(const int n, PetscReal factor, const PaddedStencil *s, Lanes w[KERNEL_MAX_POINTS]) {
-  for (int k = 0; k < n; k++) w[k] = factor * s->weight[0][KERNEL_MAX_POINTS + n - 1 - k] + (Lanes){0};
-}
-
-/* SUM w_k line[k] of a row of n weights. */
-static inline Lanes RowSum(const int n, const Lanes w[], const PetscReal *line) {
-  Lanes sum = w[0] * LanesAt(line);
-  for (int k = 1; k < n; k++) sum += w[k] * LanesAt(line + k);
-  return sum;
-}
-
-/* The answers to J_x and J_y, which share xy's sums. */
-static void SumRows(const DipoleFaces *f, int c, const PaddedStencil dipole[DIPOLE_COUNT], const PetscReal N[2],
-                    PetscReal scale) {
-  Lanes xx[KERNEL_MAX_POINTS], yy[KERNEL_MAX_POINTS], xy[KERNEL_MAX_POINTS];
-  Turned(6, 2 * scale * N[0], &dipole[DIPOLE_XX], xx);
-  Turned(4, 2 * scale * N[1], &dipole[DIPOLE_YY], yy);
-  Turned(5, scale, &dipole[DIPOLE_XY], xy);
-  const PetscReal *const lx = f->line[DIPOLE_XX], *const ly = f->line[DIPOLE_YY], *const lxy = f->line[DIPOLE_XY];
-  const PetscInt runs = f->runs[c];
-  for (const FaceRun *run = f->run[c]; run < f->run[c] + runs; run++) {
-    const PetscInt end = run->line + run->vectors * LANES;
-    PetscReal *x = f->field[0] + run->at, *y = f->field[1] + run->at;
-    for (PetscInt q = run->line; q < end; q += LANES, x += LANES, y += LANES) {
-      const Lanes both = RowSum(5, xy, lxy + q);
-      LanesPut(RowSum(6, xx, lx + q) + N[1] * both, x);
-      LanesPut(RowSum(4, yy, ly + q) + N[0] * both, y);
+/* The answers to J_x and J_y on a component's faces, which share the part xy. */
+static void DipoleFacesFill(const DipoleFaces *f, int c, const OffsetTable *t, const PaddedStencil dipole[DIPOLE_COUNT],
+                            const PetscInt cells[2], const PetscReal N[2]) {
+  PetscReal xx[STENCIL_ROW], yy[STENCIL_ROW], xy[STENCIL_ROW];
+  for (PetscInt r = 0; r < f->rows[c]; r++) {
+    const PetscInt face[2] = {f->first[c][0] + cells[0], f->first[c][1] + cells[1] + r}, at = r * f->stride[c];
+    PartRow(6, 4, t, DIPOLE_XX, &dipole[DIPOLE_XX], face, f->columns[c], xx);
+    PartRow(4, 6, t, DIPOLE_YY, &dipole[DIPOLE_YY], face, f->columns[c], yy);
+    PartRow(5, 5, t, DIPOLE_XY, &dipole[DIPOLE_XY], face, f->columns[c], xy);
+    for (PetscInt i = 0; i < f->columns[c]; i += LANES) {
+      LanesPut(2 * N[0] * LanesAt(xx + i) + N[1] * LanesAt(xy + i), f->field[0] + at + i);
+      LanesPut(2 * N[1] * LanesAt(yy + i) + N[0] * LanesAt(xy + i), f->field[1] + at + i);
     }
-  }
-}
-
-/* What a marker reads of both fields, of rows of so many vectors. */
-static inline void Read(const int rows, const int vectors, const DipoleFaces *f, int c, PetscInt k, const Lanes w[],
-                        Lanes sum[2]) {
-  const PetscInt stride = f->stride[c];
-  const PetscReal *x = f->field[0] + f->at[c][k], *y = f->field[1] + f->at[c][k];
-  sum[0] = sum[1] = (Lanes){0};
-  for (int r = 0; r < rows * vectors; r++) {
-    const PetscInt at = r / vectors * stride + r % vectors * LANES;
-    const Lanes weight = w[r];
-    sum[0] += weight * LanesAt(x + at);
-    sum[1] += weight * LanesAt(y + at);
   }
 }
 
 void DipoleFacesAnswer(const DipoleFaces *f, const OffsetTable lattice[2], const PaddedStencil dipole[DIPOLE_COUNT],
                        const PetscInt cells[2], const PetscReal N[2], PetscReal scale, PetscReal *const free[4]) {
   for (int c = 0; c < 2; c++) {
-    SumColumns(f, c, &lattice[c], dipole, cells);
-    SumRows(f, c, dipole, N, scale);
+    DipoleFacesFill(f, c, &lattice[c], dipole, cells, (PetscReal[]){scale * N[0], scale * N[1]});
     for (PetscInt k = 0; k < f->n; k++) {
-      const Lanes *w = f->weight + DIPOLE_FACE_WEIGHTS * k;
-      Lanes sum[2];
-      if (c)
-        Read(V_ROWS, 1, f, c, k, w + U_ROWS * U_VECTORS, sum);
-      else
-        Read(U_ROWS, U_VECTORS, f, c, k, w, sum);
+      const PaddedStencil *s = &f->stencil[2 * k + c];
+      const PetscReal *wx = s->weight[0] + KERNEL_MAX_POINTS, *wy = s->weight[1] + KERNEL_MAX_POINTS;
+      PetscInt at = (s->first[1] - f->first[c][1]) * f->stride[c] + s->first[0] - f->first[c][0];
+      Lanes sum[2] = {{0}, {0}};
+      for (PetscInt j = 0; j < s->n[1]; j++, at += f->stride[c])
+        for (int q = 0; q < 2; q++)
+          sum[q] += wy[j] *
+                    (LanesAt(wx) * LanesAt(f->field[q] + at) + LanesAt(wx + LANES) * LanesAt(f->field[q] + at + LANES));
       LanesTwoSums(sum[0], sum[1], &free[c ? 3 : 0][k], &free[c ? 1 : 2][k]);
     }
   }

@@ -6,27 +6,20 @@
 #pragma once
 #include "layers/latticegreen.h"
 
-/* Faces of one component: from the lattice's entry `first` of a row on, in whole vectors. */
-typedef struct {
-  PetscInt row, first, vectors;
-  PetscInt line, at; /* where its numbers are */
-} FaceRun;
-
-#define DIPOLE_FACE_CELLS 30   /* up to which markers share a dipole's faces: what the lattice's tables reach */
-#define DIPOLE_FACE_WEIGHTS 13 /* vectors: 4 rows of two of u, 5 rows of one of v */
+#define DIPOLE_FACE_CELLS 30 /* up to which markers share a dipole's faces: what the lattice's tables reach */
 
 typedef struct {
-  PetscInt n, runs[2], vectors; /* markers; runs of each component; vectors of all runs */
-  PetscInt stride[2];           /* from a row to the next */
-  FaceRun *run[2];
-  PetscInt *at[2]; /* [n] where a marker's first face is */
-  Lanes *weight;   /* [DIPOLE_FACE_WEIGHTS n] of its faces */
-  PetscReal *line[DIPOLE_COUNT], *field[2];
+  PetscInt n;                   /* markers */
+  const PaddedStencil *stencil; /* [2n] borrowed */
+  PetscInt first[2][2];         /* of each component: the first face along x and along y, */
+  PetscInt rows[2], columns[2]; /* how many, along x in whole vectors, */
+  PetscInt stride[2];           /* and from a row to the next */
+  PetscReal *field[2];          /* [rows][stride] answers to J_x and J_y */
 } DipoleFaces;
 
-/* DipoleFacesCreate - those of n markers whose unfolded stencils (cbs54) are stencil[2n]. DipoleFacesAnswer -
-   free[4][n], xx, yy, xy (x from J_y), yx, of the dipole's stencils and N, times scale; `cells` are added to offsets,
-   which lie within the tables but for OFFSET_LAGS. Not collective. */
+/* DipoleFacesCreate - those of n markers whose unfolded stencils are stencil[2n], of cbs54, with at most STENCIL_ROW
+   faces along x. DipoleFacesAnswer - free[4][n], xx, yy, xy (x from J_y), yx, of the dipole's stencils and N, times
+   scale; `cells` are added to offsets, which lie within the tables but for OFFSET_LAGS. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleFacesCreate(PetscInt n, const PaddedStencil stencil[], DipoleFaces *faces);
 PETSC_EXTERN PetscErrorCode DipoleFacesDestroy(DipoleFaces *faces);
 PETSC_EXTERN void DipoleFacesAnswer(const DipoleFaces *faces, const OffsetTable lattice[2],

@@ -134,7 +134,7 @@ static PetscBool CountsWall(LayerPairs f, const NearBlock *b, int wall) {
    has another image for the nearest one, and where they take less: a marker's double sums cost as much as some vectors
    of faces. */
 static PetscErrorCode ShareFaces(LayerPairs f, const NearBlock *b, PairChunk *c, DipoleFaces *faces) {
-  enum { VECTORS_PER_MARKER = 6 };
+  enum { FACES_PER_MARKER = 12 };
   const Grid g = f->set->markers->grid;
   const NearBounds *row = &f->bounds[b->row], *column = &f->bounds[b->column];
   const PetscInt n = LayoutCount(f->set->markers->layout, b->column);
@@ -146,7 +146,7 @@ static PetscErrorCode ShareFaces(LayerPairs f, const NearBlock *b, PairChunk *c,
     if (f->set->box && !g->wall[dir] && most > 0.49 * (g->hi[dir] - g->lo[dir])) PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(DipoleFacesCreate(n, f->stencil + 2 * f->set->markers->layout->start[b->column], faces));
-  if (faces->vectors > VECTORS_PER_MARKER * n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (faces->rows[0] * faces->columns[0] > FACES_PER_MARKER * n) PetscFunctionReturn(PETSC_SUCCESS);
   for (int q = 0; q < 4; q++) PetscCall(PetscCalloc1(n + LANES, &c->shared[q]));
   c->reach = PETSC_MAX_REAL; /* where walls are near */
   PetscFunctionReturn(PETSC_SUCCESS);
