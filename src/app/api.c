@@ -96,7 +96,7 @@ PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscIn
   PetscFunctionBeginUser;
   *obstacles = o ? o->layout->bodies : 0;
   for (PetscInt v = 0; start && v <= *obstacles; v++) start[v] = o ? o->layout->start[v] : 0;
-  if (o && markers) ObstaclesCurves(o, s->scheme->state.t, markers);
+  if (o && markers) ObstaclesCurves(o, StateInstant(&s->scheme->state), markers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -53,7 +53,7 @@ static PetscErrorCode Step_Penalty(Scheme s, PetscReal most) {
   Penalty *d = (Penalty *)s->data;
   State *q = &s->state;
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, StateInstant(q)));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   /* 1  forces of springs and bending at X^n */
   PetscCall(Momentum(s, d));

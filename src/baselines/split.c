@@ -87,7 +87,7 @@ static PetscErrorCode Step_Split(Scheme s, PetscReal most) {
   Coupling c = s->coupling;
   const PetscBool any = CouplingHasMembrane(c);
   PetscFunctionBeginUser;
-  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, q->t));
+  PetscCall(SchemePlace(s, 1 / q->dt, q->X, NULL, StateInstant(q)));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PredictVelocity(s, d));                 /* step 1 */
   if (d->bending) PetscCall(ImplicitBending(s, d)); /* step 2 */

@@ -33,10 +33,10 @@ PetscErrorCode BodiesDestroy(Bodies *bodies) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BodiesSee(Bodies b, PetscReal t, const PetscReal X[], PetscReal all[]) {
+PetscErrorCode BodiesSee(Bodies b, Instant at, const PetscReal X[], PetscReal all[]) {
   const PetscInt M = b->layout->start[b->vesicles];
   PetscFunctionBeginUser;
   if (X != all) PetscCall(PetscArraycpy(all, X, 2 * M));
-  if (b->obstacles) ObstaclesCurves(b->obstacles, t, all + 2 * M);
+  if (b->obstacles) ObstaclesCurves(b->obstacles, at, all + 2 * M);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -21,8 +21,8 @@ PETSC_EXTERN PetscErrorCode BodiesCreate(Membrane membrane, Obstacles obstacles,
 PETSC_EXTERN PetscErrorCode BodiesDestroy(Bodies *bodies);
 
 /* BodiesSee - the curves as contacts look at them (contacts.h), all[2(M + W)]: vesicles at X[2M], then the obstacles at
-   time t, those clockwise that have the fluid inside. X may be all. Not collective. */
-PETSC_EXTERN PetscErrorCode BodiesSee(Bodies bodies, PetscReal t, const PetscReal X[], PetscReal all[]);
+   an instant, those clockwise that have the fluid inside. X may be all. Not collective. */
+PETSC_EXTERN PetscErrorCode BodiesSee(Bodies bodies, Instant at, const PetscReal X[], PetscReal all[]);
 
 /* BodiesObstacleNumbers - this rank's numbers (two a marker) of obstacles in a marker vector of all bodies;
    BodiesFirstObstacle - where they start. BodiesObstacleMarkers - markers of all ranks' obstacles. Not collective. */

@@ -33,9 +33,9 @@ ForceReach ForcesReach(Forces f) {
   for (PetscInt k = 0; k < (f)->n; k++)                                                                                \
     if ((f)->force[k].operation) PetscCall((f)->force[k].operation((f)->force[k].context, __VA_ARGS__))
 
-PetscErrorCode ForcesPlace(Forces f, PetscReal t, const PetscReal X[]) {
+PetscErrorCode ForcesPlace(Forces f, Instant at, const PetscReal X[]) {
   PetscFunctionBeginUser;
-  FORCES_EACH(f, place, t, X);
+  FORCES_EACH(f, place, at, X);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,13 +57,13 @@ PetscErrorCode ForcesDense(Forces f, PetscInt vesicle, PetscReal alpha, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ForcesLaw(Forces f, ForceReach first, ForceReach last, PetscReal t, const PetscScalar X[],
+PetscErrorCode ForcesLaw(Forces f, ForceReach first, ForceReach last, Instant at, const PetscScalar X[],
                          PetscScalar F[]) {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < f->n; k++) {
     const Force *force = &f->force[k];
     if (force->reach < first || force->reach > last) continue;
-    if (force->law) PetscCall(force->law(force->context, t, X, F));
+    if (force->law) PetscCall(force->law(force->context, at, X, F));
     if (!force->law && force->rate) PetscCall(force->rate(force->context, -1, X, F));
     if (!force->law && force->known) PetscCall(force->known(force->context, -1, X, F));
   }

@@ -23,16 +23,16 @@ typedef enum {
 typedef struct {
   const char *name; /* its energy is in the column energy_NAME of series.csv */
   ForceReach reach;
-  void *context;                                                     /* first argument of all operations */
-  PetscErrorCode (*place)(void *, PetscReal t, const PetscReal X[]); /* at X*[2M] of all vesicles, at time t */
+  void *context;                                                    /* first argument of all operations */
+  PetscErrorCode (*place)(void *, Instant at, const PetscReal X[]); /* at X*[2M] of all vesicles, at an instant */
   PetscErrorCode (*rate)(void *, PetscReal alpha, const PetscScalar V[], PetscScalar F[]);  /* F += alpha K V */
   PetscErrorCode (*known)(void *, PetscReal alpha, const PetscScalar X[], PetscScalar F[]); /* F += alpha k, with X* */
   /* K[2n][2n] += alpha times the part of K of one vesicle, for dense blocks of the preconditioner */
   PetscErrorCode (*dense)(void *, PetscInt vesicle, PetscReal alpha, PetscReal K[]);
-  /* F += the force at the markers X at time t, wherever it is placed; NULL: the force is -(K X + k) with X* = X */
-  PetscErrorCode (*law)(void *, PetscReal t, const PetscScalar X[], PetscScalar F[]);
+  /* F += the force at the markers X at an instant, wherever it is placed; NULL: the force is -(K X + k) with X* = X */
+  PetscErrorCode (*law)(void *, Instant at, const PetscScalar X[], PetscScalar F[]);
   /* E[vesicles] += the energies of the own vesicles (length^4/time^2) */
-  PetscErrorCode (*energy)(void *, PetscReal t, const PetscScalar X[], PetscReal E[]);
+  PetscErrorCode (*energy)(void *, Instant at, const PetscScalar X[], PetscReal E[]);
   /* sum += SUM of the force's x component times the period by which a seam of the box separates the force from its
      counterforce, at markers x, where it is placed at X*[2M]; on every rank */
   PetscErrorCode (*seams)(void *, const PetscReal Xstar[], const PetscScalar x[], PetscReal *sum);
@@ -56,11 +56,11 @@ PETSC_EXTERN ForceReach ForcesReach(Forces forces);
 
 /* Operations of all forces, in the order of the list; ForcesLaw - of those from the first reach to the last one.
    Collective. */
-PETSC_EXTERN PetscErrorCode ForcesPlace(Forces forces, PetscReal t, const PetscReal X[]);
+PETSC_EXTERN PetscErrorCode ForcesPlace(Forces forces, Instant at, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode ForcesRate(Forces forces, PetscReal alpha, const PetscScalar V[], PetscScalar F[]);
 PETSC_EXTERN PetscErrorCode ForcesKnown(Forces forces, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
 PETSC_EXTERN PetscErrorCode ForcesDense(Forces forces, PetscInt vesicle, PetscReal alpha, PetscReal K[]);
-PETSC_EXTERN PetscErrorCode ForcesLaw(Forces forces, ForceReach first, ForceReach last, PetscReal t,
+PETSC_EXTERN PetscErrorCode ForcesLaw(Forces forces, ForceReach first, ForceReach last, Instant at,
                                       const PetscScalar X[], PetscScalar F[]);
 PETSC_EXTERN PetscErrorCode ForcesSeams(Forces forces, const PetscReal Xstar[], const PetscScalar x[], PetscReal *sum);
 

@@ -1,13 +1,13 @@
 #include "bodies/motion.h"
 
-BodyPose MotionPose(const BodyMotion *m, PetscReal t) {
-  const PetscReal s = m->frequency > 0 ? PetscSinReal(m->frequency * t) / m->frequency : t;
+BodyPose MotionPose(const BodyMotion *m, Instant at) {
+  const PetscReal t = at.t, s = m->frequency > 0 ? PetscSinReal(m->frequency * t) / m->frequency : t;
   if (!m->carried) return (BodyPose){{m->center[0], m->center[1]}, 0};
   return (BodyPose){{m->center[0] + m->velocity[0] * s, m->center[1] + m->velocity[1] * s}, m->rotation * s};
 }
 
-void MotionCarry(const BodyMotion *m, PetscReal t, PetscInt n, const PetscReal rest[], PetscReal X[]) {
-  const BodyPose p = MotionPose(m, t);
+void MotionCarry(const BodyMotion *m, Instant at, PetscInt n, const PetscReal rest[], PetscReal X[]) {
+  const BodyPose p = MotionPose(m, at);
   const PetscReal c = m->turned ? PetscCosReal(p.angle) : 1, s = m->turned ? PetscSinReal(p.angle) : 0;
   for (PetscInt k = 0; k < 2 * n; k += 2) {
     const PetscReal x = rest[k] - m->center[0], y = rest[k + 1] - m->center[1];
@@ -16,14 +16,14 @@ void MotionCarry(const BodyMotion *m, PetscReal t, PetscInt n, const PetscReal r
   }
 }
 
-void MotionVelocity(const BodyMotion *m, PetscReal t, const PetscReal X[2], PetscReal U[2]) {
-  const BodyPose p = MotionPose(m, t);
-  const PetscReal swing = PetscCosReal(m->frequency * t);
+void MotionVelocity(const BodyMotion *m, Instant at, const PetscReal X[2], PetscReal U[2]) {
+  const BodyPose p = MotionPose(m, at);
+  const PetscReal swing = PetscCosReal(m->frequency * at.t);
   U[0] = swing * (m->velocity[0] - m->rotation * (X[1] - p.center[1]));
   U[1] = swing * (m->velocity[1] + m->rotation * (X[0] - p.center[0]));
 }
 
-void MotionTurn(const BodyMotion *m, PetscReal from, PetscReal to, PetscInt n, PetscReal F[]) {
+void MotionTurn(const BodyMotion *m, Instant from, Instant to, PetscInt n, PetscReal F[]) {
   const PetscReal angle = MotionPose(m, to).angle - MotionPose(m, from).angle;
   const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
   for (PetscInt k = 0; k < 2 * n && m->turned; k += 2) {
@@ -33,7 +33,7 @@ void MotionTurn(const BodyMotion *m, PetscReal from, PetscReal to, PetscInt n, P
   }
 }
 
-PetscReal MotionStride(const BodyMotion *m, PetscReal from, PetscReal to, PetscReal reach) {
+PetscReal MotionStride(const BodyMotion *m, Instant from, Instant to, PetscReal reach) {
   const BodyPose a = MotionPose(m, from), b = MotionPose(m, to);
   const PetscReal way = PetscHypotReal(b.center[0] - a.center[0], b.center[1] - a.center[1]);
   return way + (m->turned ? PetscAbsReal(b.angle - a.angle) * reach : 0);

@@ -11,18 +11,24 @@ typedef struct {
   PetscBool carried, turned;       /* its markers move; they turn, which those of a circle need not */
 } BodyMotion;
 
+/* A time, and where bodies are then that do not move as they are told. */
+typedef struct {
+  PetscReal t;
+} Instant;
+
 /* Where a body is. */
 typedef struct {
   PetscReal center[2];
   PetscReal angle; /* by which it has turned since time 0 (radian) */
 } BodyPose;
 
-PETSC_EXTERN BodyPose MotionPose(const BodyMotion *motion, PetscReal t);
+PETSC_EXTERN BodyPose MotionPose(const BodyMotion *motion, Instant at);
 
-/* MotionCarry - the n markers X at time t from those at rest, at time 0. MotionVelocity - the velocity U at time t of
-   the body where X is. MotionTurn - n vectors F of the body at time `from` become those of the same body at time `to`.
-   MotionStride - the farthest way of a point at the distance `reach` from the center, from one time to another. */
-PETSC_EXTERN void MotionCarry(const BodyMotion *motion, PetscReal t, PetscInt n, const PetscReal rest[], PetscReal X[]);
-PETSC_EXTERN void MotionVelocity(const BodyMotion *motion, PetscReal t, const PetscReal X[2], PetscReal U[2]);
-PETSC_EXTERN void MotionTurn(const BodyMotion *motion, PetscReal from, PetscReal to, PetscInt n, PetscReal F[]);
-PETSC_EXTERN PetscReal MotionStride(const BodyMotion *motion, PetscReal from, PetscReal to, PetscReal reach);
+/* MotionCarry - the n markers X at an instant from those at rest, at time 0. MotionVelocity - the velocity U at an
+   instant of the body where X is. MotionTurn - n vectors F of the body as it stands at one instant become those of the
+   same body at another one. MotionStride - the farthest way of a point at the distance `reach` from the center, from
+   one instant to another. */
+PETSC_EXTERN void MotionCarry(const BodyMotion *motion, Instant at, PetscInt n, const PetscReal rest[], PetscReal X[]);
+PETSC_EXTERN void MotionVelocity(const BodyMotion *motion, Instant at, const PetscReal X[2], PetscReal U[2]);
+PETSC_EXTERN void MotionTurn(const BodyMotion *motion, Instant from, Instant to, PetscInt n, PetscReal F[]);
+PETSC_EXTERN PetscReal MotionStride(const BodyMotion *motion, Instant from, Instant to, PetscReal reach);

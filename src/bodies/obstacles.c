@@ -71,18 +71,18 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The markers of one curve at time t, X[2W]. */
-static void ObstacleCarry(Obstacles o, PetscInt b, PetscReal t, PetscReal X[]) {
-  const PetscInt at = 2 * o->layout->start[b];
-  MotionCarry(&o->motion[b], t, LayoutCount(o->layout, b), o->rest + at, X + at);
+/* The markers of one curve at an instant, X[2W]. */
+static void ObstacleCarry(Obstacles o, PetscInt b, Instant at, PetscReal X[]) {
+  const PetscInt first = 2 * o->layout->start[b];
+  MotionCarry(&o->motion[b], at, LayoutCount(o->layout, b), o->rest + first, X + first);
 }
 
-PetscErrorCode ObstaclesPlace(Obstacles o, PetscReal t) {
+PetscErrorCode ObstaclesPlace(Obstacles o, Instant at) {
   PetscReal length;
   PetscFunctionBeginUser;
-  o->t = t;
+  o->at = at;
   for (PetscInt b = 0; b < o->layout->bodies; b++) {
-    if (o->motion[b].carried) ObstacleCarry(o, b, t, o->X);
+    if (o->motion[b].carried) ObstacleCarry(o, b, at, o->X);
     if (o->motion[b].turned) PetscCall(Normals(o, b, &length));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,8 +111,8 @@ void ObstaclesOrder(Obstacles o, const PetscReal own[], PetscReal seen[]) {
       }
 }
 
-void ObstaclesCurves(Obstacles o, PetscReal t, PetscReal X[]) {
-  for (PetscInt b = 0; b < o->layout->bodies; b++) ObstacleCarry(o, b, t, X);
+void ObstaclesCurves(Obstacles o, Instant at, PetscReal X[]) {
+  for (PetscInt b = 0; b < o->layout->bodies; b++) ObstacleCarry(o, b, at, X);
   ObstaclesOrder(o, X, X);
 }
 
@@ -158,14 +158,14 @@ static PetscErrorCode CheckOthers(Obstacles o, const CurveRoom *room, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstaclesCheck(Obstacles o, Scene scene, PetscReal t, char message[PETVES_MAX_MESSAGE]) {
+PetscErrorCode ObstaclesCheck(Obstacles o, Scene scene, Instant at, char message[PETVES_MAX_MESSAGE]) {
   const CurveRoom room = SceneRoom(scene);
   PetscReal *X;
   PetscFunctionBeginUser;
   message[0] = 0;
   if (!o->moving) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(2 * o->layout->M, &X));
-  ObstaclesCurves(o, t, X);
+  ObstaclesCurves(o, at, X);
   PetscCall(CheckWalls(o, &room, FluidSpecCellSize(&scene->fluid), X, message));
   if (!*message) PetscCall(CheckOthers(o, &room, X, message));
   PetscCall(PetscFree(X));
@@ -187,7 +187,7 @@ static void ObstacleExtent(Obstacles o, PetscInt b, PetscReal *half, PetscReal *
   *half = 2 * area / length;
 }
 
-PetscErrorCode ObstaclesCheckStride(Obstacles o, PetscReal t, PetscReal dt, char message[PETVES_MAX_MESSAGE]) {
+PetscErrorCode ObstaclesCheckStride(Obstacles o, Instant from, Instant to, char message[PETVES_MAX_MESSAGE]) {
   PetscReal half, reach;
   PetscFunctionBeginUser;
   message[0] = 0;
@@ -195,7 +195,7 @@ PetscErrorCode ObstaclesCheckStride(Obstacles o, PetscReal t, PetscReal dt, char
   for (PetscInt b = 0; b < o->layout->bodies && !*message; b++) {
     if (!o->motion[b].carried) continue;
     ObstacleExtent(o, b, &half, &reach);
-    const PetscReal stride = MotionStride(&o->motion[b], t - dt, t, reach);
+    const PetscReal stride = MotionStride(&o->motion[b], from, to, reach);
     if (stride > half)
       PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
                               "obstacle %" PetscInt_FMT " would go by %.3g in one step, more than half its width, %.3g",
@@ -221,7 +221,7 @@ void ObstaclesBlock(Obstacles o, PetscInt b, PetscReal alpha, PetscInt lda, Pets
     for (PetscInt i = 0; i < 2 * LayoutCount(o->layout, b); i++) A[j * lda + i] += alpha * o->beta * N[i] * N[j];
 }
 
-void ObstaclesTurn(Obstacles o, PetscReal from, PetscReal to, PetscScalar F[]) {
+void ObstaclesTurn(Obstacles o, Instant from, Instant to, PetscScalar F[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++)
     MotionTurn(&o->motion[b], from, to, LayoutCount(l, b), F + 2 * LayoutOffset(l, b));
@@ -243,13 +243,13 @@ PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, Vec k, char messag
   PetscInt size;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * l->n, &u));
-  PetscCall(FlowVelocities(flow, o->t, l->n, o->X + 2 * l->first, u, message));
+  PetscCall(FlowVelocities(flow, o->at.t, l->n, o->X + 2 * l->first, u, message));
   PetscCall(VecGetLocalSize(k, &size));
   PetscCall(VecGetArray(k, &a));
   y = a + size - 2 * l->n;
   for (PetscInt b = l->own; b < l->end; b++)
     for (PetscInt i = l->start[b]; i < l->start[b + 1]; i++) {
-      MotionVelocity(&o->motion[b], o->t, o->X + 2 * i, U);
+      MotionVelocity(&o->motion[b], o->at, o->X + 2 * i, U);
       for (PetscInt c = 0, at = 2 * (i - l->first); c < 2; c++) y[at + c] += u[at + c] - o->ratio[b] * U[c];
     }
   PetscCall(VecRestoreArray(k, &a));
@@ -258,23 +258,23 @@ PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, Vec k, char messag
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstaclesLoads(Obstacles o, PetscReal t, const PetscScalar F[], ObstacleLoad load[]) {
+PetscErrorCode ObstaclesLoads(Obstacles o, Instant at, const PetscScalar F[], ObstacleLoad load[]) {
   const Layout l = o->layout;
-  PetscReal *at;
+  PetscReal *all;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(load, l->bodies));
-  PetscCall(PetscMalloc1(2 * l->M, &at));
+  PetscCall(PetscMalloc1(2 * l->M, &all));
   for (PetscInt b = l->own; b < l->end; b++) {
-    const BodyPose p = MotionPose(&o->motion[b], t);
-    ObstacleCarry(o, b, t, at);
+    const BodyPose p = MotionPose(&o->motion[b], at);
+    ObstacleCarry(o, b, at, all);
     for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
-      const PetscReal *f = F + 2 * (k - l->first), *X = at + 2 * k;
+      const PetscReal *f = F + 2 * (k - l->first), *X = all + 2 * k;
       load[b].force[0] += f[0];
       load[b].force[1] += f[1];
       load[b].torque += (X[0] - p.center[0]) * f[1] - (X[1] - p.center[1]) * f[0];
     }
   }
-  PetscCall(PetscFree(at));
+  PetscCall(PetscFree(all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)(3 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

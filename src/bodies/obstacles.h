@@ -19,7 +19,7 @@ struct _p_Obstacles {
   Layout layout;        /* obstacles alone, on the same ranks */
   PetscReal *rest;      /* [2W] markers of all obstacles at time 0 */
   PetscReal *X;         /* [2W] where they have been placed */
-  PetscReal t;          /* at this time */
+  Instant at;           /* at this time */
   BodyMotion *motion;   /* [curves] */
   PetscBool moving;     /* whether a curve moves */
   PetscReal *N;         /* [2W] unit vector of each curve's normals, dX/dk turned outwards, where placed */
@@ -38,30 +38,31 @@ struct _p_Obstacles {
 PETSC_EXTERN PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *obstacles);
 PETSC_EXTERN PetscErrorCode ObstaclesDestroy(Obstacles *obstacles);
 
-/* ObstaclesPlace - X and N at time t. Not collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesPlace(Obstacles obstacles, PetscReal t);
+/* ObstaclesPlace - X and N at an instant. Not collective. */
+PETSC_EXTERN PetscErrorCode ObstaclesPlace(Obstacles obstacles, Instant at);
 
-/* ObstaclesCheck - whether moving bodies at time t keep the distance from walls and from other obstacles, images among
-   them, down to which their forces are right: KERNEL_FOLDED_CELLS cells and SCENE_LEAST_GAP edges. ObstaclesCheckStride
-   - whether no body steps over what it would run into: in the time dt up to t it goes by at most half its width.
+/* ObstaclesCheck - whether moving bodies at an instant keep the distance from walls and from other obstacles, images
+   among them, down to which their forces are right: KERNEL_FOLDED_CELLS cells and SCENE_LEAST_GAP edges.
+   ObstaclesCheckStride
+   - whether no body steps over what it would run into: from one instant to another it goes by at most half its width.
    message is empty, or says which do not. Not collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Scene scene, PetscReal t,
+PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Scene scene, Instant at,
                                            char message[PETVES_MAX_MESSAGE]);
-PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, PetscReal t, PetscReal dt,
+PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, Instant from, Instant to,
                                                  char message[PETVES_MAX_MESSAGE]);
 
-/* ObstaclesCurves - markers of all obstacles at time t as others see them, X[2W]: clockwise the curves that have the
-   fluid inside. ObstaclesOrder - other numbers of all markers in that order, seen[2W], which may be
-   own. Not collective. */
-PETSC_EXTERN void ObstaclesCurves(Obstacles obstacles, PetscReal t, PetscReal X[]);
+/* ObstaclesCurves - markers of all obstacles at an instant as others see them, X[2W]: clockwise the curves that have
+   the fluid inside. ObstaclesOrder - other numbers of all markers in that order, seen[2W], which may be own. Not
+   collective. */
+PETSC_EXTERN void ObstaclesCurves(Obstacles obstacles, Instant at, PetscReal X[]);
 PETSC_EXTERN void ObstaclesOrder(Obstacles obstacles, const PetscReal own[], PetscReal seen[]);
 
 /* ObstaclesRows - y += beta N N^T F, what obstacles give their rows themselves, of own F[2w], y[2w]. ObstaclesBlock -
    A += alpha times that as a matrix, of one curve's markers, columns lda apart. ObstaclesTurn - own vectors at the
-   markers as the bodies stood at time `from`, F[2w], become those at time `to`. Not collective. */
+   markers as the bodies stood at one instant, F[2w], become those at another. Not collective. */
 PETSC_EXTERN void ObstaclesRows(Obstacles obstacles, const PetscScalar F[], PetscScalar y[]);
 PETSC_EXTERN void ObstaclesBlock(Obstacles obstacles, PetscInt curve, PetscReal alpha, PetscInt lda, PetscReal A[]);
-PETSC_EXTERN void ObstaclesTurn(Obstacles obstacles, PetscReal from, PetscReal to, PetscScalar F[]);
+PETSC_EXTERN void ObstaclesTurn(Obstacles obstacles, Instant from, Instant to, PetscScalar F[]);
 
 /* ObstaclesScale - multiply the residuals y[2w] of the own rows by weight/ds, or (inverse) divide. Not collective. */
 PETSC_EXTERN void ObstaclesScale(Obstacles obstacles, PetscReal weight, PetscBool inverse, PetscScalar y[]);
@@ -84,6 +85,5 @@ static inline void ObstacleLoadAdd(ObstacleLoad *to, PetscReal scale, const Obst
   to->torque += scale * (from->torque + d[0] * from->force[1] - d[1] * from->force[0]);
 }
 
-/* ObstaclesLoads - of all obstacles at time t, load[curves], from the own F[2w]. Collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesLoads(Obstacles obstacles, PetscReal t, const PetscScalar F[],
-                                           ObstacleLoad load[]);
+/* ObstaclesLoads - of all obstacles at an instant, load[curves], from the own F[2w]. Collective. */
+PETSC_EXTERN PetscErrorCode ObstaclesLoads(Obstacles obstacles, Instant at, const PetscScalar F[], ObstacleLoad load[]);

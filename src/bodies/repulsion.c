@@ -81,11 +81,11 @@ static PetscErrorCode FindSprings(Repulsion r, const PetscReal X[], PetscInt *co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RepulsionPlace(void *context, PetscReal t, const PetscReal X[]) {
+static PetscErrorCode RepulsionPlace(void *context, Instant at, const PetscReal X[]) {
   const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;
   PetscCall(PetscFree(r->spring));
-  PetscCall(BodiesSee(r->bodies, t, X, r->all));
+  PetscCall(BodiesSee(r->bodies, at, X, r->all));
   PetscCall(FindSprings(r, r->all, &r->count, &r->spring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,16 +132,16 @@ static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the law gives at time t at markers x[2n] (own part) whatever the springs: y += the force on the own markers, y
-   NULL: not wanted; E[vesicles] += the energy of the films of each own vesicle, half of that of a film between two
+/* What the law gives at an instant at markers x[2n] (own part) whatever the springs: y += the force on the own markers,
+   y NULL: not wanted; E[vesicles] += the energy of the films of each own vesicle, half of that of a film between two
    vesicles, E NULL: not wanted. Collective. */
-static PetscErrorCode RepulsionAt(Repulsion r, PetscReal t, const PetscScalar x[], PetscScalar y[], PetscReal E[]) {
+static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[], PetscScalar y[], PetscReal E[]) {
   const Layout l = r->membrane->layout;
   Spring *spring;
   PetscInt count;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, x, r->all));
-  PetscCall(BodiesSee(r->bodies, t, r->all, r->all));
+  PetscCall(BodiesSee(r->bodies, at, r->all, r->all));
   PetscCall(FindSprings(r, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];
@@ -153,15 +153,15 @@ static PetscErrorCode RepulsionAt(Repulsion r, PetscReal t, const PetscScalar x[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RepulsionLaw(void *context, PetscReal t, const PetscScalar X[], PetscScalar F[]) {
+static PetscErrorCode RepulsionLaw(void *context, Instant at, const PetscScalar X[], PetscScalar F[]) {
   PetscFunctionBeginUser;
-  PetscCall(RepulsionAt((Repulsion)context, t, X, F, NULL));
+  PetscCall(RepulsionAt((Repulsion)context, at, X, F, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RepulsionEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode RepulsionEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
   PetscFunctionBeginUser;
-  PetscCall(RepulsionAt((Repulsion)context, t, X, NULL, E));
+  PetscCall(RepulsionAt((Repulsion)context, at, X, NULL, E));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -32,7 +32,7 @@ PetscErrorCode TurningExpect(Forces forces, PetscReal nu, PetscReal a0, Vec expe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TurningPlace(void *context, PetscReal time, const PetscReal X[]) {
+static PetscErrorCode TurningPlace(void *context, Instant at, const PetscReal X[]) {
   const Turning *t = (const Turning *)context;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(t->tension, t->membrane->layout->n));
@@ -60,7 +60,7 @@ static PetscErrorCode TurningKnown(void *context, PetscReal alpha, const PetscSc
 }
 
 /* The tension is a step's; without a step it is the solved one, which is none of the list. */
-static PetscErrorCode TurningLaw(void *context, PetscReal t, const PetscScalar X[], PetscScalar F[]) {
+static PetscErrorCode TurningLaw(void *context, Instant at, const PetscScalar X[], PetscScalar F[]) {
   return PETSC_SUCCESS;
 }
 

@@ -59,7 +59,7 @@ static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   PetscFunctionBeginUser;
   if (!q->solved || !near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(q->X, &F));
-  PetscCall(CouplingForces(s->coupling, q->t, q->sigma, q->X, F));
+  PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, F));
   PetscCall(SingleCellsCorrect(&near->set, &near->lattice, F, q->X, field));
   PetscCall(VecDestroy(&F));
   if (contrast) PetscCall(DoubleCellsCorrect(&near->set, contrast->lattice, contrast->ratio, q->U, q->X, field));

@@ -49,7 +49,7 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(2 * o->layout->M, &X, o->layout->bodies, &kind));
-  ObstaclesCurves(o, 0, X);
+  ObstaclesCurves(o, (Instant){0}, X);
   for (PetscInt v = 0; v < o->layout->bodies; v++) kind[v] = o->kind[v].type;
   H5Put(f, "obstacle_kind", H5_INT, o->layout->bodies, kind);
   H5Put(f, "obstacle_start", H5_INT, o->layout->bodies + 1, o->layout->start);
@@ -148,7 +148,7 @@ static void FramesWrap(Scheme s, PetscBool solids, PetscReal X[]) {
     if (!solids)
       ShiftIntoBox(s->fluid->grid, n, own, n, own);
     else if (o->motion[v].carried)
-      ShiftIntoBox(s->fluid->grid, 1, MotionPose(&o->motion[v], s->state.t).center, n, own);
+      ShiftIntoBox(s->fluid->grid, 1, MotionPose(&o->motion[v], StateInstant(&s->state)).center, n, own);
   }
 }
 
@@ -174,7 +174,7 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
     AppendedSet(file, k++, f->all);
   }
   if (moving) {
-    ObstaclesCurves(o, s->state.t, f->all);
+    ObstaclesCurves(o, StateInstant(&s->state), f->all);
     AppendedSet(file, k++, f->all);
   }
   if (wrapped && s->membrane->layout->M) {
@@ -184,7 +184,7 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
     AppendedSet(file, k++, f->all);
   }
   if (wrapped && moving) {
-    ObstaclesCurves(o, s->state.t, f->all);
+    ObstaclesCurves(o, StateInstant(&s->state), f->all);
     FramesWrap(s, PETSC_TRUE, f->all);
     AppendedSet(file, k++, f->all);
   }

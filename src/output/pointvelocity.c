@@ -40,7 +40,7 @@ static PetscErrorCode PointLayers(PointVelocity *p) {
   PetscCall(PetscCalloc1(2 * l->bodies, &p->layer));
   PetscCall(PetscMalloc3(2 * l->M, &X, 2 * l->M, &F, 2 * l->M, &J));
   PetscCall(VecDuplicate(q->X, &forces));
-  PetscCall(CouplingForces(s->coupling, q->t, q->sigma, q->X, forces));
+  PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, forces));
   PetscCall(LayoutGatherVec(l, q->X, X));
   PetscCall(LayoutGatherVec(l, forces, F));
   PetscCall(LayoutGatherVec(l, q->U, J));

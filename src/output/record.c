@@ -62,7 +62,7 @@ static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal plac
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * l->n, &F));
   PetscCall(VecGetArrayRead(s->state.X, &X));
-  PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, FORCE_OUTSIDE, s->state.t, X, F));
+  PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, FORCE_OUTSIDE, StateInstant(&s->state), X, F));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt at = LayoutOffset(l, v);
     Measures measures;
@@ -94,7 +94,7 @@ static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
   PetscCall(PetscCalloc2(vesicles + curves, &inner, 2 * (vesicles + curves), &place));
   PetscCall(VesicleLoads(s, inner, place));
   for (PetscInt b = 0; b < curves; b++) {
-    const BodyPose pose = MotionPose(&o->motion[b], s->state.t);
+    const BodyPose pose = MotionPose(&o->motion[b], StateInstant(&s->state));
     for (int c = 0; c < 2; c++) place[2 * (vesicles + b) + c] = pose.center[c];
     inner[vesicles + b] = load[b];
   }
@@ -122,7 +122,7 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
   const PetscInt curves = o->layout->bodies, count = ObstacleRowCount(&s->scene->obstacles);
   PetscCall(PetscMalloc1(curves, &load));
   PetscCall(VecGetArrayRead(s->state.solid, &F));
-  PetscCall(ObstaclesLoads(o, s->state.t, F, load));
+  PetscCall(ObstaclesLoads(o, StateInstant(&s->state), F, load));
   PetscCall(VecRestoreArrayRead(s->state.solid, &F));
   PetscCall(ContainerLoads(s, load));
   PetscCall(PetscArrayzero(values, count));
@@ -130,7 +130,7 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
   values[0] = drive.pressure_drop;
   values[1] = drive.flux;
   for (PetscInt b = 0; b < curves; b++) {
-    const BodyPose pose = MotionPose(&o->motion[b], s->state.t);
+    const BodyPose pose = MotionPose(&o->motion[b], StateInstant(&s->state));
     const PetscReal own[] = {load[b].force[0], load[b].force[1], load[b].torque,
                              pose.center[0],   pose.center[1],   pose.angle}; /* the last three where obstacles move */
     const PetscInt each = ObstacleEach(&s->scene->obstacles);
@@ -230,7 +230,7 @@ static PetscErrorCode RecordEnergies(Record *r, Scheme s, const PetscScalar X[])
     r->energy[k] = 0;
     if (column == RECORD_NOWHERE) continue;
     PetscCall(PetscArrayzero(r->work, l->bodies));
-    PetscCall(force->energy(force->context, s->state.t, X, r->work));
+    PetscCall(force->energy(force->context, StateInstant(&s->state), X, r->work));
     for (PetscInt v = l->own; v < l->end; v++)
       *(column < 0 ? &r->energy[k] : &r->each[v * COLUMN_COUNT + column]) += r->work[v];
   }

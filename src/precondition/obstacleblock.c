@@ -10,7 +10,7 @@ struct _p_ObstacleBlock {
   Obstacles obstacles;   /* borrowed */
   PetscMPIInt root;      /* the rank that has the factor */
   Age age;               /* of the factor, for the coefficient alpha of H */
-  PetscReal made_at;     /* time at which the bodies were where the factor has them */
+  Instant made_at;       /* when which the bodies were where the factor has them */
   float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
   ObstacleModes modes;   /* NULL: dense inverse */
   PetscScalar *all;      /* [2W] work */
@@ -146,7 +146,7 @@ static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
   PetscCall(PetvesEvent("FactorObstacles", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   AgeRenew(&b->age, b->coupling->fluid->alpha);
-  b->made_at = b->obstacles->t;
+  b->made_at = b->obstacles->at;
   if (b->modes)
     PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
   else
@@ -188,7 +188,7 @@ PetscBool ObstacleBlockIsOlder(Coupling c) {
 }
 
 void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
-  memory[0] = b->made_at;
+  memory[0] = b->made_at.t;
   AgeGetMemory(&b->age, memory + 1);
 }
 
@@ -250,7 +250,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  ObstaclesTurn(b->obstacles, b->obstacles->t, b->made_at, r);
+  ObstaclesTurn(b->obstacles, b->obstacles->at, b->made_at, r);
   PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
   if (root) DenseSingle(w, b->all, b->from);
   if (ObstacleBlockCoupled(b)) {
@@ -278,6 +278,6 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
   }
   for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
-  ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->t, solid);
+  ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->at, solid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,12 +14,12 @@ PetscErrorCode CouplingCopyVesicles(Coupling c, Vec from, Vec to) {
 }
 
 /* The obstacles' part of X. */
-static PetscErrorCode PlaceObstacles(Coupling c, PetscReal t) {
+static PetscErrorCode PlaceObstacles(Coupling c, Instant at) {
   const Obstacles o = c->bodies->obstacles;
   PetscScalar *X;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesPlace(o, t));
+  PetscCall(ObstaclesPlace(o, at));
   PetscCall(VecGetArray(c->X, &X));
   PetscCall(PetscArraycpy(X + BodiesFirstObstacle(c->bodies), o->X + 2 * o->layout->first, 2 * o->layout->n));
   PetscCall(VecRestoreArray(c->X, &X));
@@ -40,7 +40,7 @@ PetscErrorCode CouplingInterpolate(Coupling c, Vec w, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const PetscReal treading[],
+PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Instant at, Vec X, const PetscReal treading[],
                              char message[PETVES_MAX_MESSAGE]) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
@@ -49,7 +49,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   if (CouplingHasBodies(c)) {
     PetscCall(MarkersCheck(c->markers, c->membrane->layout, X, message));
     if (*message) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(PlaceObstacles(c, t));
+    PetscCall(PlaceObstacles(c, at));
     PetscCall(CouplingCopyVesicles(c, X, c->X));
   }
   PetscCall(MobilityPlace(c->mobility, a0, c->X));
@@ -57,7 +57,7 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, PetscReal t, Vec X, const
   PetscCall(VecGetArrayRead(X, &x));
   LawPlace(c->law, a0, x);
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(ForcesPlace(c->forces, t, c->markers->X));
+  PetscCall(ForcesPlace(c->forces, at, c->markers->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,7 +207,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscCall(PetscCalloc1(m->layout->bodies, &c->treading));
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &c->force));
   PetscCall(VecDuplicate(c->force, &c->X));
-  PetscCall(PlaceObstacles(c, 0));
+  PetscCall(PlaceObstacles(c, (Instant){0}));
   PetscCall(VecDuplicate(c->force, &c->velocity));
   PetscCall(CreateShell(c, 1, Mult_S, MultTranspose_S, &c->S));
   PetscCall(CreateShell(c, 2, Mult_B, MultTranspose_B, &c->B));
@@ -216,7 +216,7 @@ PetscErrorCode CouplingCreate(Fluid fluid, Membrane m, Obstacles obstacles, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingForces(Coupling c, PetscReal t, Vec sigma, Vec X, Vec F) {
+PetscErrorCode CouplingForces(Coupling c, Instant at, Vec sigma, Vec X, Vec F) {
   const Membrane m = c->membrane;
   const PetscScalar *x, *s;
   PetscScalar *f;
@@ -229,7 +229,7 @@ PetscErrorCode CouplingForces(Coupling c, PetscReal t, Vec sigma, Vec X, Vec F) 
   PetscCall(VecGetArrayRead(sigma, &s));
   LawPlace(law, 1, x);
   LawForce(law, -1, s, f);
-  PetscCall(ForcesLaw(c->forces, FORCE_WITHIN, FORCE_OUTSIDE, t, x, f));
+  PetscCall(ForcesLaw(c->forces, FORCE_WITHIN, FORCE_OUTSIDE, at, x, f));
   PetscCall(VecRestoreArrayRead(sigma, &s));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecRestoreArray(F, &f));

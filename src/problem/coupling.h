@@ -36,10 +36,10 @@ PETSC_EXTERN PetscErrorCode CouplingCreate(Fluid fluid, Membrane membrane, Obsta
 PETSC_EXTERN PetscErrorCode CouplingDestroy(Coupling *coupling);
 
 /* CouplingPlace - place everything that a solve stands on: the time coefficient a0 (1/time) in the fluid's H; E, S, B,
-   tangents, near field and forces at the markers X and at the obstacles of time t; the labels' speeds
+   tangents, near field and forces at the markers X and at the obstacles of an instant; the labels' speeds
    treading[vesicles] (1/time; NULL: at rest). message[PETVES_MAX_MESSAGE] is empty, or says which marker is too near to
    a wall; it is the same on every rank. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, PetscReal t, Vec X,
+PETSC_EXTERN PetscErrorCode CouplingPlace(Coupling coupling, PetscReal a0, Instant at, Vec X,
                                           const PetscReal treading[], char message[PETVES_MAX_MESSAGE]);
 
 /* CouplingCopyVesicles - copy the vesicles' part of `from` to that of `to`; each is a marker vector of the vesicles or
@@ -77,6 +77,6 @@ PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Ve
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
 
-/* CouplingForces - F = all forces times ds of membranes at time t at X with tension sigma, as marker vectors of the
+/* CouplingForces - F = all forces times ds of membranes at an instant at X with tension sigma, as marker vectors of the
    membranes. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingForces(Coupling coupling, PetscReal t, Vec sigma, Vec X, Vec F);
+PETSC_EXTERN PetscErrorCode CouplingForces(Coupling coupling, Instant at, Vec sigma, Vec X, Vec F);

@@ -226,7 +226,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   const BDF b = BDFCoefficients(d->order = Order(s, h), h->step);
   PetscCall(HistorySum(b.order, b.star, 1, h->X, d->Xstar));
   PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
-  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, s->state.t + d->done + dt));
+  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, (Instant){s->state.t + d->done + dt}));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal aim = d->start ? 0 : b.a0; /* at edges and areas: the first ones have them */
   if (s->membrane->viscosity > 0) {

@@ -96,7 +96,7 @@ static PetscErrorCode Advance(Scheme s, StepTrial *trial, const StepPlan *before
   StepPlan plan;
   PetscFunctionBeginUser;
   PetscCall(CoupledAdvance(s, trial->dt));
-  PetscCall(FilmsLoss(s, s->state.t + trial->dt, &trial->loss));
+  PetscCall(FilmsLoss(s, (Instant){s->state.t + trial->dt}, &trial->loss));
   if (trial->loss == 0) PetscFunctionReturn(PETSC_SUCCESS);
   s->plan.level = before->level;
   PetscCall(Decide(s, trial, verdict));

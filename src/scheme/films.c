@@ -80,8 +80,8 @@ static void CompareFilms(PetscInt n, const CurveGap now[], PetscInt m, const Cur
   }
 }
 
-/* The film that has lost most in the step to time t, of all ranks. */
-static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Drained *worst) {
+/* The film that has lost most in the step to an instant, of all ranks. */
+static PetscErrorCode FindDrained(Scheme s, Instant at, PetscReal limit, Drained *worst) {
   const Layout l = s->membrane->layout;
   const PetscReal thin = Thin(s), thick = thin / PetscMax(1 - limit, 0.25);
   CurveGap *now, *before = NULL;
@@ -90,10 +90,10 @@ static PetscErrorCode FindDrained(Scheme s, PetscReal t, PetscReal limit, Draine
   PetscBool any;
   PetscFunctionBeginUser;
   *worst = (Drained){0};
-  PetscCall(SchemeCurves(s, t, s->state.X));
+  PetscCall(SchemeCurves(s, at, s->state.X));
   PetscCall(FindFilms(s, s->work_all, thin, &n, &now));
   PetscCall(AgreeFlag(l->comm, n ? PETSC_TRUE : PETSC_FALSE, &any));
-  if (any) PetscCall(SchemeCurves(s, s->before.state.t, s->before.state.X));
+  if (any) PetscCall(SchemeCurves(s, StateInstant(&s->before.state), s->before.state.X));
   if (n) {
     PetscCall(FindFilms(s, s->work_all, thick, &m, &before));
     CompareFilms(n, now, m, before, thick, limit, worst);
@@ -120,18 +120,18 @@ PetscErrorCode FilmsCross(Scheme s, const PetscScalar X[], PetscInt pair[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FilmsLoss(Scheme s, PetscReal t, PetscReal *loss) {
+PetscErrorCode FilmsLoss(Scheme s, Instant at, PetscReal *loss) {
   PetscInt pair[2] = {-1, -1};
   PetscBool cross;
   PetscFunctionBeginUser;
   *loss = 0;
   if (s->scene->limits.gap_loss > 0) {
     Drained worst;
-    PetscCall(FindDrained(s, t, s->scene->limits.gap_loss, &worst));
+    PetscCall(FindDrained(s, at, s->scene->limits.gap_loss, &worst));
     *loss = worst.loss;
   }
   if (!s->scene->limits.crossing) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeCurves(s, t, s->state.X));
+  PetscCall(SchemeCurves(s, at, s->state.X));
   PetscCall(FilmsCross(s, s->work_all, pair));
   PetscCall(AgreeFlag(s->membrane->layout->comm, pair[0] >= 0 ? PETSC_TRUE : PETSC_FALSE, &cross));
   if (cross) *loss = PetscMax(*loss, 2);
@@ -143,7 +143,7 @@ PetscErrorCode FilmsCheck(Scheme s) {
   Drained worst;
   PetscFunctionBeginUser;
   if (!(s->scene->limits.gap_loss > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FindDrained(s, s->state.t, s->scene->limits.gap_loss, &worst));
+  PetscCall(FindDrained(s, StateInstant(&s->state), s->scene->limits.gap_loss, &worst));
   if (worst.loss <= 1) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt v = worst.after.curve[0], w = worst.after.curve[1];
   if (v == s->coupling->bodies->layout->bodies)
@@ -221,7 +221,7 @@ PetscErrorCode FilmsGaps(Scheme s, PetscReal *least, PetscReal each[]) {
   *least = NAN;
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMPIIntCast(l->bodies, &vesicles));
-  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
+  PetscCall(SchemeCurves(s, StateInstant(&s->state), s->state.X));
   PetscCall(ThinnestOfEach(s, s->work_all, each, &thinnest));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, each, vesicles, MPIU_REAL, MPI_MIN, l->comm));
   for (PetscInt v = 0; v < l->bodies; v++)
@@ -274,7 +274,7 @@ PetscErrorCode FilmsWarn(Scheme s) {
   View view;
   PetscFunctionBeginUser;
   if (!s->coupling->mobility->near || s->warnings.film) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
+  PetscCall(SchemeCurves(s, StateInstant(&s->state), s->state.X));
   SeeCurves(s, s->work_all, &view);
   PetscCall(CurveThinnestFilm(&view.set, s->coupling->bodies->ds, &view.room, SCENE_FILM, &film));
   PetscReal thinness = -film.spacings;

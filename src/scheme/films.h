@@ -17,7 +17,7 @@ PETSC_EXTERN PetscErrorCode FilmsCross(Scheme scheme, const PetscScalar X[], Pet
 /* FilmsLoss - the loss of the step from the kept state to the present markers, at time t: the largest part of its
    thickness that a thin film has lost, over -limit_gap_loss. Above 1 it is too much; where membranes cross and
    -limit_crossing holds it is 2 at least. 0 where no film is thin, or nothing is limited. Collective. */
-PETSC_EXTERN PetscErrorCode FilmsLoss(Scheme scheme, PetscReal t, PetscReal *loss);
+PETSC_EXTERN PetscErrorCode FilmsLoss(Scheme scheme, Instant at, PetscReal *loss);
 
 /* FilmsCheck - report.failure says so when a film has lost too much in the last step. Collective. */
 PETSC_EXTERN PetscErrorCode FilmsCheck(Scheme scheme);

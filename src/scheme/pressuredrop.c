@@ -56,7 +56,7 @@ static PetscErrorCode OwnForces(Scheme s, ForceSums *sum) {
   PetscCall(AddObstacles(s, sum));
   PetscCall(PetscCalloc1(2 * n, &F));
   PetscCall(VecGetArrayRead(s->state.X, &X));
-  PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, last, s->state.t, X, F));
+  PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, last, StateInstant(&s->state), X, F));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   for (PetscInt k = 0; k < n; k++) sum->spread += F[2 * k];
   PetscCall(PetscFree(F));

@@ -50,11 +50,11 @@ static PetscErrorCode RecallSharedShapes(Scheme s, SharedShapes shapes, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All is placed for a0 and bodies of time t. */
-static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, PetscReal t, Vec X, const PetscReal treading[]) {
+/* All is placed for a0 and bodies of an instant. */
+static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, Instant at, Vec X, const PetscReal treading[]) {
   char message[PETVES_MAX_MESSAGE];
   PetscFunctionBeginUser;
-  PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, message));
+  PetscCall(CouplingPlace(s->coupling, a0, at, X, treading, message));
   PetscCheck(!*message, s->scene->comm, PETSC_ERR_USER_INPUT, "-restart %s: %s; allowed: a checkpoint of this scene",
              s->scene->output.restart, message);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,11 +66,11 @@ static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
   char message[PETVES_MAX_MESSAGE];
   PetscFunctionBeginUser;
   if (!OlderBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->scene, memory[0], message));
+  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->scene, (Instant){memory[0]}, message));
   PetscCheck(memory[0] >= 0 && memory[0] <= LATEST * (s->state.t + s->state.dt) && !*message, s->scene->comm,
              PETSC_ERR_USER_INPUT, "-restart %s: its solver's memory is of time %g; allowed: a checkpoint.h5 of petves",
              s->scene->output.restart, (double)memory[0]);
-  PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, memory[0], s->state.X, NULL));
+  PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, (Instant){memory[0]}, s->state.X, NULL));
   PetscCall(ObstacleBlockSetMemory(OlderBlock(s), memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -90,7 +90,7 @@ PetscErrorCode SchemeRecall(Scheme s, const PetscReal memory[]) {
   PetscCall(PetscArraycpy(X, memory + AGE_MEMORY + 2 * l->first, 2 * l->n));
   PetscCall(VecRestoreArray(d->made_at, &X));
   PetscCall(PetscArraycpy(d->made_with, memory + AGE_MEMORY + 2 * l->M, l->bodies));
-  PetscCall(PlaceAgain(s, a0, s->state.t, d->made_at, d->made_with));
+  PetscCall(PlaceAgain(s, a0, StateInstant(&s->state), d->made_at, d->made_with));
   PetscCall(PreconditionerSetMemory(d->solver->preconditioner, memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

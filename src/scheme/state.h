@@ -23,6 +23,11 @@ typedef struct {
   Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
 } State;
 
+/* StateInstant - its time and its bodies' places. Not collective. */
+static inline Instant StateInstant(const State *state) {
+  return (Instant){state->t};
+}
+
 /* StateCreate - a state at rest, of zero vectors. StateDuplicate - zero vectors of the same kinds; times are not
    copied. Collective. */
 PETSC_EXTERN PetscErrorCode StateCreate(Coupling coupling, State *state);

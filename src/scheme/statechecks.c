@@ -220,7 +220,7 @@ static PetscErrorCode CheckContact(Scheme s) {
   PetscMPIInt whose;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) reach = PetscMax(reach, Unresolved(s, v, v));
-  PetscCall(SchemeCurves(s, s->state.t, s->state.X));
+  PetscCall(SchemeCurves(s, StateInstant(&s->state), s->state.X));
   if (s->scene->limits.crossing) PetscCall(CheckCrossing(s, s->work_all));
   FluidSpecPeriods(&s->scene->fluid, period);
   PetscCall(PairsWithin(l->M, s->work_all, own, period, reach, IsContact, &search));

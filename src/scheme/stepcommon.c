@@ -55,10 +55,10 @@ PetscErrorCode SchemeReturn(Scheme s, PetscBool advanced) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemeCurves(Scheme s, PetscReal t, Vec X) {
+PetscErrorCode SchemeCurves(Scheme s, Instant at, Vec X) {
   PetscFunctionBeginUser;
   PetscCall(LayoutGatherVec(s->membrane->layout, X, s->work_all));
-  PetscCall(BodiesSee(s->coupling->bodies, t, s->work_all, s->work_all));
+  PetscCall(BodiesSee(s->coupling->bodies, at, s->work_all, s->work_all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,15 +95,15 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
 }
 
 /* That moving bodies run into nothing that is solid, nor step over it. */
-static PetscErrorCode CheckBodies(Scheme s, PetscReal t) {
+static PetscErrorCode CheckBodies(Scheme s, Instant at) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const char *advice = "a -time_end before that, or other velocities";
   PetscFunctionBeginUser;
   if (!o || !o->moving) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesCheck(o, s->scene, t, s->report.failure));
+  PetscCall(ObstaclesCheck(o, s->scene, at, s->report.failure));
   if (!*s->report.failure) {
     advice = "a smaller -time_step";
-    PetscCall(ObstaclesCheckStride(o, t, s->state.dt, s->report.failure));
+    PetscCall(ObstaclesCheckStride(o, (Instant){at.t - s->state.dt}, at, s->report.failure));
   }
   if (*s->report.failure) PetscCall(SchemeAdvise(s, advice));
   PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
@@ -123,16 +123,16 @@ static PetscErrorCode AddOsmotic(Scheme s, Vec X) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t) {
+PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], Instant at) {
   const char *failure = s->report.failure;
   PetscFunctionBeginUser;
-  PetscCall(CheckBodies(s, t));
+  PetscCall(CheckBodies(s, at));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingPlace(s->coupling, a0, t, X, treading, s->report.failure));
+  PetscCall(CouplingPlace(s->coupling, a0, at, X, treading, s->report.failure));
   if (*failure)
     PetscCall(SchemeAdvise(s, "a larger -domain_box, or a smaller -time_step if it should not have come there"));
   if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeBackground(s, X, t));
+  PetscCall(SchemeBackground(s, X, at.t));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AddOsmotic(s, X));
   PetscCall(CouplingStretching(s->coupling, s->background, s->g));

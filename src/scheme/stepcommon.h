@@ -117,9 +117,9 @@ PETSC_EXTERN PetscErrorCode SchemeAddSolver(Scheme scheme, KSP ksp, PC inner);
 PETSC_EXTERN void SchemeIterations(Scheme scheme, PetscInt tension, PetscInt bending);
 
 /* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
-   (CouplingPlace), and the background of time t there: background = u_inf(X), g minus the law's rows of the background.
-   report.failure says so when a marker is too close to a wall or the flow has no value. Collective. */
-PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], PetscReal t);
+   (CouplingPlace), and the background of that instant there: background = u_inf(X), g minus the law's rows of the
+   background. report.failure says so when a marker is too close to a wall or the flow has no value. Collective. */
+PETSC_EXTERN PetscErrorCode SchemePlace(Scheme scheme, PetscReal a0, Vec X, const PetscReal treading[], Instant at);
 
 /* SchemeBackground - the background flow's velocity at the markers X at time t, zero in the total form, where it is in
    w; report.failure where a flow of the caller's has none. Collective. */
@@ -142,11 +142,11 @@ PETSC_EXTERN PetscErrorCode SchemeReturn(Scheme scheme, PetscBool advanced);
 PETSC_EXTERN PetscErrorCode SchemeSolverFailed(Scheme scheme, const char prefix[], KSPConvergedReason why, PetscInt its,
                                                PetscReal residual);
 
-/* SchemeCurves - scheme->work_all: the vesicles' markers X, then the obstacles at time t as contacts look at them
+/* SchemeCurves - scheme->work_all: the vesicles' markers X, then the obstacles at an instant as contacts look at them
    (BodiesSee).
    SchemeNamePair - two bodies in words, by their places: "vesicles 1 and 2", "vesicle 1 and obstacle 2"; `same` with
    the number of one that is both. The first is Collective. */
-PETSC_EXTERN PetscErrorCode SchemeCurves(Scheme scheme, PetscReal t, Vec X);
+PETSC_EXTERN PetscErrorCode SchemeCurves(Scheme scheme, Instant at, Vec X);
 PETSC_EXTERN PetscErrorCode SchemeNamePair(Scheme scheme, PetscInt v, PetscInt w, const char same[], size_t length,
                                            char text[]);
 

@@ -156,7 +156,7 @@ static inline PetscErrorCode TestBoxDestroy(TestBox *b) {
 static inline PetscErrorCode TestWorldPlace(PetscReal a0, TestWorld *w) {
   char message[PETVES_MAX_MESSAGE];
   PetscFunctionBeginUser;
-  PetscCall(CouplingPlace(w->coupling, a0, 0, w->X, NULL, message));
+  PetscCall(CouplingPlace(w->coupling, a0, (Instant){0}, w->X, NULL, message));
   PetscCheck(!*message, w->scene->comm, PETSC_ERR_LIB, "%s", message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

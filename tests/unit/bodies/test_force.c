@@ -28,7 +28,7 @@ static PetscErrorCode PointSpringDense(void *context, PetscInt v, PetscReal alph
   return PETSC_SUCCESS;
 }
 
-static PetscErrorCode PointSpringEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode PointSpringEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
   const PointSpring *s = (const PointSpring *)context;
   for (PetscInt v = s->layout->own; v < s->layout->end; v++)
     for (PetscInt k = 2 * LayoutOffset(s->layout, v), n = 2 * LayoutCount(s->layout, v); n--; k++)

@@ -24,7 +24,7 @@ static const Case cases[] = {{"repulsion", "-vesicle_center 0.8,1.5,2.05,1.6", {
 static PetscErrorCode FindEnergy(const Force *force, const PetscReal X[], PetscReal *energy) {
   PetscReal E[2] = {0, 0};
   PetscFunctionBeginUser;
-  PetscCall(force->energy(force->context, 0, X, E));
+  PetscCall(force->energy(force->context, (Instant){0}, X, E));
   *energy = E[0] + E[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -35,7 +35,7 @@ static PetscErrorCode CheckSlope(const Case *c, const Force *r, Layout l, PetscR
   PetscReal *F, around[2], off = 0, largest = 0, sum[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * l->M, &F));
-  PetscCall(r->law(r->context, 0, X, F));
+  PetscCall(r->law(r->context, (Instant){0}, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
     for (int side = 0; side < 2; side++) {
@@ -61,8 +61,8 @@ static PetscErrorCode CheckSprings(const Case *c, const Force *r, Layout l, cons
   unsigned seed = 5;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
-  PetscCall(r->place(r->context, 0, X));
-  PetscCall(r->law(r->context, 0, X, F));
+  PetscCall(r->place(r->context, (Instant){0}, X));
+  PetscCall(r->law(r->context, (Instant){0}, X, F));
   PetscCall(r->known(r->context, 1, X, F));
   PetscCall(r->rate(r->context, 1, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
@@ -95,8 +95,8 @@ static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bo
   near.repulsion.range = near.repulsion.band = 1e-3;
   PetscCall(ForceCreate_Contact(bodies, grid, &near, &r));
   PetscCall(PetscCalloc1(2 * m->M, &F));
-  PetscCall(r.place(r.context, 0, X));
-  PetscCall(r.law(r.context, 0, X, F));
+  PetscCall(r.place(r.context, (Instant){0}, X));
+  PetscCall(r.law(r.context, (Instant){0}, X, F));
   PetscCall(FindEnergy(&r, X, &energy));
   for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
   CHECK(((Repulsion)r.context)->count == 0 && energy == 0 && largest == 0,

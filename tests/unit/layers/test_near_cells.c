@@ -156,7 +156,7 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   PetscCall(FaceMeans(g, u, cells[1]));
   speed[0] = Largest(n, cells[1]);
   PetscCall(VecDuplicate(w.X, &F));
-  PetscCall(CouplingForces(w.coupling, 0, sigma, w.X, F));
+  PetscCall(CouplingForces(w.coupling, (Instant){0}, sigma, w.X, F));
   PetscCall(SingleCellsCorrect(&w.coupling->mobility->near->set, &w.coupling->mobility->near->lattice, F, w.X,
                                (PetscReal *[]){cells[1], NULL, cells[0]}));
   PetscCall(VecDestroy(&F));
