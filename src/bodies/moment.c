@@ -104,7 +104,7 @@ PetscErrorCode MomentEnergy(Membrane m, PetscInt v, const PetscScalar X[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MomentPlace(void *context, PetscReal t, const PetscReal X[]) {
+static PetscErrorCode MomentPlace(void *context, Instant t, const PetscReal X[]) {
   const Moment *o = (const Moment *)context;
   const Membrane m = o->membrane;
   const Layout l = m->layout;
@@ -158,7 +158,7 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MomentLaw(void *context, PetscReal t, const PetscScalar X[], PetscScalar F[]) {
+static PetscErrorCode MomentLaw(void *context, Instant t, const PetscScalar X[], PetscScalar F[]) {
   const Membrane m = ((const Moment *)context)->membrane;
   const Layout l = m->layout;
   PetscScalar *G;
@@ -176,7 +176,7 @@ static PetscErrorCode MomentLaw(void *context, PetscReal t, const PetscScalar X[
 }
 
 /* What E_B is above the quadratic energy, which is in the same column. */
-static PetscErrorCode MomentAddEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode MomentAddEnergy(void *context, Instant t, const PetscScalar X[], PetscReal E[]) {
   const Membrane m = ((const Moment *)context)->membrane;
   PetscFunctionBeginUser;
   for (PetscInt v = m->layout->own; v < m->layout->end; v++) {

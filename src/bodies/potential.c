@@ -43,7 +43,7 @@ static PetscReal PotentialAdd(const Potential *o, PetscReal alpha, const PetscSc
   return seams;
 }
 
-static PetscErrorCode PotentialPlace(void *context, PetscReal t, const PetscReal X[]) {
+static PetscErrorCode PotentialPlace(void *context, Instant t, const PetscReal X[]) {
   Potential *o = (Potential *)context;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(o->at, 2 * o->membrane->layout->n));
@@ -58,7 +58,7 @@ static PetscErrorCode PotentialKnown(void *context, PetscReal alpha, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PotentialLaw(void *context, PetscReal t, const PetscScalar X[], PetscScalar F[]) {
+static PetscErrorCode PotentialLaw(void *context, Instant t, const PetscScalar X[], PetscScalar F[]) {
   const Potential *o = (const Potential *)context;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(o->membrane->layout, 2, X, o->all));
@@ -66,7 +66,7 @@ static PetscErrorCode PotentialLaw(void *context, PetscReal t, const PetscScalar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PotentialEnergy(void *context, PetscReal t, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode PotentialEnergy(void *context, Instant t, const PetscScalar X[], PetscReal E[]) {
   const Potential *o = (const Potential *)context;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(o->membrane->layout, 2, X, o->all));
