@@ -24,6 +24,10 @@ POST = (
     "-vesicle_reduced_area 0.7 -vesicle_angle 90 -vesicle_center 0.25,1"
 )
 BESIDE = "-obstacle_shape posts -obstacle_radius 0.2 -obstacle_center 0.5,0 -vesicle_center -0.3,0"
+CAPSULE = (
+    "-domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type shear "
+    "-vesicle_semi_axes 1,1 -vesicle_bending 0 -membrane_law hooke"
+)
 GAPS = (0.125, 0.25, 0.5, 1.0, 4.0)  # cells
 RATIO, GAP, DT = "viscosity inside over outside", "gap at the start (cells)", "$dt$"
 DIVIDED = "-vesicle_viscosity_ratio"
@@ -48,6 +52,11 @@ def throat(dt: float, width: float) -> str:
 def post(dt: float, c_b: float) -> str:
     """Return the options of a vesicle that a stream drapes round a post, until t = 1.92."""
     return f"{POST} -vesicle_bending {c_b} -time_step {dt!r} -time_end 1.92"
+
+
+def capsule(dt: float, ca: float) -> str:
+    """Return the options of a capsule in unbounded shear of rate 1, R0 = nu = 1."""
+    return f"{CAPSULE} -membrane_stretching {1 / ca!r} {times(dt)}"
 
 
 RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
@@ -79,5 +88,9 @@ MAPS = (
         tuple(0.02 * 2**k for k in (4, 3, 2, 1, 0)), lambda c_b, dt: (post(dt, c_b),),
         {"no repulsion": "", "repulsion": "-contact_repulsion 40", "ratio 10": f"{DIVIDED} 10",
          "fine markers": "-vesicle_markers 91 -vesicle_allow_close_markers true"}),
+    Map("capsule", r"capsule in shear, $Ca = \nu$ rate $R_0/E_s$, unbounded", "Ca", (1e-5, 1e-4, 1e-3, 0.01, 0.1, 0.4), OVER_RATE,
+        powers(0, 1, 2, 3, 4, 6), lambda ca, dt: (capsule(dt, ca),),
+        {"no bending": "", "neo-Hookean": "-membrane_law neo_hookean", "ratio 10": f"{DIVIDED} 10",
+         "two passing": "-vesicle_count 2 -vesicle_center -2,0.5,2,-0.5 -vesicle_bending 0.01"}),
 )
 # fmt: on

@@ -31,7 +31,7 @@ def read(folder) -> dict[tuple[str, str, float, float], dict[str, str]]:
         (0, "", "ok"),
         (0, "petves: stopping after step 3: -time_wall_limit 40", "too slow"),
         (1, "-vesicle_spacing 0.75: markers 0.743329 h apart", "refused"),
-        (2, "vesicle 1: edge ratio 2.3 beyond -limit_edge_ratio 2 after step 4", "edge ratio above 2"),
+        (2, "vesicle 1: edge ratio 2.3 beyond -limit_edge_ratio 2 after step 4", "uneven edges"),
         (2, "vesicle 1: area error 0.3 beyond -limit_area_error 0.2 after step 4", "drift above 1 %"),
         (
             2,
