@@ -8,8 +8,10 @@ from pathlib import Path
 from studies.common.engine import Results
 from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
+from studies.gallery.capsule import SCENE as CAPSULE
 from studies.gallery.constriction import SCENE as CONSTRICTION
 from studies.gallery.couette import SCENE as COUETTE
+from studies.gallery.doublet import SCENE as DOUBLET
 from studies.gallery.hundred import SCENE as HUNDRED
 from studies.gallery.passing import SCENE as PASSING
 from studies.gallery.posts import SCENE as POSTS
@@ -37,6 +39,8 @@ SCENES = (
     SUSPENSION,
     REYNOLDS,
     CAPILLARY,
+    CAPSULE,
+    DOUBLET,
 )
 TEMPLATE = Path(__file__).with_name("page.md")
 BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
