@@ -18,12 +18,15 @@ typedef struct {
   PetscReal pressure, winding;
 } CurveSums;
 
-/* What the two layers differ in: what makes integrals of sums of the kernel, without their factors; what sums lack at
-   the complex t0 where the curve is at z, and the spacings of the markers within which the finer points are summed:
-   everywhere where slope times density has modes that the markers do not resolve. */
+/* What the two layers differ in: what makes integrals of sums of the kernel, without their factors; these factors of
+   velocity and pressure, for viscosity 1 and (a power of n) one marker; the spacings of the markers within which the
+   finer points are summed: everywhere where slope times density has modes that the markers do not resolve; what sums
+   lack at the complex t0 where the curve is at z. */
 typedef struct {
   const PairKernel *pair;
-  PetscReal velocity, pressure, near;
+  PetscReal velocity, pressure, factor[2];
+  int markers;
+  PetscReal near;
   void (*correct)(CurveLayer layer, Point z, Point t0, Point slope, CurveSums *sums);
 } CurveKernel;
 
@@ -95,8 +98,15 @@ static void DoubleCorrect(CurveLayer c, Point z, Point t0, Point slope, CurveSum
   s->pressure += cimag(CurvePole(N, t0, J / slope, other / slope));
 }
 
-static const CurveKernel single = {&stokeslet, 4 * PETSC_PI, 2 * PETSC_PI, 6, SingleCorrect};
-static const CurveKernel twice = {&stresslet, -2 * PETSC_PI, PETSC_PI, PETSC_INFINITY, DoubleCorrect};
+static const CurveKernel curve_kernels[] = {
+    {&stokeslet,
+     4 * PETSC_PI,
+     2 * PETSC_PI,
+     {0.125 / (PETSC_PI * PETSC_PI), 0.25 / (PETSC_PI * PETSC_PI)},
+     1,
+     6,
+     SingleCorrect},
+    {&stresslet, -2 * PETSC_PI, PETSC_PI, {-0.5 / PETSC_PI, 1 / PETSC_PI}, 0, PETSC_INFINITY, DoubleCorrect}};
 
 static void LayerPointsPut(LayerPoints *c, int what, PetscInt j, Point value) {
   c->each[what][j] = creal(value);
@@ -126,15 +136,16 @@ static PetscErrorCode LayerPointsCreate(CurveLayer c, PetscInt n, LayerPoints *p
 
 PetscErrorCode CurveLayerCreate(const PairKernel *kernel, PetscInt n, PetscReal nu, const PetscReal X[],
                                 const PetscReal density[], CurveLayer *out) {
-  const PetscReal force = (PetscReal)n / (4 * PETSC_PI * PETSC_PI);
   CurveLayer c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
   *out = c;
-  c->kernel = kernel->force ? &single : &twice;
+  c->kernel = curve_kernels;
+  while (c->kernel->pair != kernel) c->kernel++;
   c->n = n;
-  c->factor[0] = kernel->force ? force / (2 * nu) : -1 / (2 * PETSC_PI);
-  c->factor[1] = kernel->force ? force : nu / PETSC_PI;
+  for (int q = 0; q < 2; q++)
+    c->factor[q] = c->kernel->factor[q] * PetscPowRealInt(n, c->kernel->markers) *
+                   PetscPowRealInt(nu, kernel->viscosity + q);
   PetscCall(PetscMalloc2(n + 1, &c->curve, n + 1, &c->density));
   FourierSeriesModes(n, X, c->curve);
   FourierSeriesModes(n, density, c->density);

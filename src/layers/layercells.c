@@ -24,7 +24,9 @@ typedef struct _LayerCells {
   const PairKernel *kernel;
   OffsetEntry answer[3][DIPOLE_COUNT]; /* of the lattice's u, v and p by source */
   PetscReal scale[3];                  /* of u, v, p in the tables */
-  FarCell far;
+  PetscInt summed;                     /* cells from a marker to a cell up to which stencils are summed */
+  const FarCell *far;                  /* the closed form beyond; NULL: the kernel itself */
+  PetscErrorCode (*find)(struct _LayerCells *cells, PetscInt v, PetscInt n); /* the sources of n markers of vesicle v */
   CurveLayer curve;
   PetscReal ratio;
   const PetscReal *X;     /* [2n] and whole vectors, as the next two */
@@ -83,17 +85,17 @@ static void LayerCellsLattice(void *context, PetscInt k, const PetscInt cell[2],
 }
 
 /* Minus what the lattice has of four distant markers, (x, y) from them to the cell, with densities F: the kernel
-   itself, and of forces the closed form of its difference, but for h^2/r^3 of the pressure. */
+   itself, and the closed form of its difference, but for h^2/r^3 of the pressure. */
 static void LayerCellsFar(const LayerCells *s, Lanes x, Lanes y, const Lanes N[2], const Lanes F[2], Lanes sum[3]) {
-  const FarCell *far = &s->far;
+  const FarCell *far = s->far;
   const PetscReal h = s->set->markers->grid->h, nu = s->set->nu;
   Lanes K[3], P[2];
   PairFree(s->kernel, s->set, x, y, N, K);
   s->kernel->pressure(x, y, N, P);
   sum[0] = -K[0] * F[0] - K[2] * F[1];
   sum[1] = -K[2] * F[0] - K[1] * F[1];
-  sum[2] = (s->kernel->force ? -1 : -nu) * (P[0] * F[0] + P[1] * F[1]);
-  if (!s->kernel->force) return;
+  sum[2] = -PetscPowRealInt(nu, s->kernel->viscosity + 1) * (P[0] * F[0] + P[1] * F[1]);
+  if (!far) return;
   const Lanes over = 1 / (x * x + y * y), c2 = (x * x - y * y) * over, s2 = 2 * x * y * over;
   const Lanes c4 = c2 * c2 - s2 * s2, s4 = 2 * c2 * s2, c6 = c4 * c2 - s4 * s2, s6 = s4 * c2 + c4 * s2;
   const Lanes factor = h * h / (2 * PETSC_PI * nu) * over, even = 4 * far->a4 * c4,
@@ -126,9 +128,10 @@ static void LayerCellsExact(void *context, const CellRow *row, PetscInt i, const
   for (int c = 0; c < 3; c++) found[c] += LanesSum(sum[c]);
 }
 
-/* The forces on the n markers of a vesicle. */
-static void SingleSources(LayerCells *s, PetscInt n) {
+/* The forces on the markers. */
+static PetscErrorCode SingleSources(LayerCells *s, PetscInt v, PetscInt n) {
   const Markers m = s->set->markers;
+  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * n; k++) {
     Stencil stencil;
     for (int dir = 0; dir < 2; dir++) {
@@ -139,9 +142,10 @@ static void SingleSources(LayerCells *s, PetscInt n) {
     StencilPad(&stencil, &s->stencil[k]);
     s->strength[k] = s->density[k];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The dipoles of the jumps at the n markers of vesicle v. */
+/* The dipoles of the jumps at the markers. */
 static PetscErrorCode DoubleSources(LayerCells *s, PetscInt v, PetscInt n) {
   const PetscReal *J = s->density, *normal = s->normal;
   PetscReal *along;
@@ -167,7 +171,7 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], 
   const Membrane m = s->set->bodies->membrane;
   const Layout l = m->layout;
   const Grid g = s->set->markers->grid;
-  const CellLayer of = {s, s->kernel->force ? SUMMED_SINGLE : SUMMED_DOUBLE, LayerCellsLattice, LayerCellsExact};
+  const CellLayer of = {s, s->summed, LayerCellsLattice, LayerCellsExact};
   const int sources = s->kernel->sources;
   PetscReal *x, *all;
   PetscFunctionBeginUser;
@@ -183,10 +187,7 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], 
     if (!CellRowBegin(g, LayoutCount(l, v), s->X, PetscMax(CELLS * g->h, SPACINGS * m->ds[v]), &row)) continue;
     s->ratio = ratio ? ratio[v] : 1;
     for (PetscInt k = 0; k < 2 * row.n && ratio; k++) s->density[k] *= 1 - ratio[v];
-    if (s->kernel->force)
-      SingleSources(s, row.n);
-    else
-      PetscCall(DoubleSources(s, v, row.n));
+    PetscCall(s->find(s, v, row.n));
     PetscCall(CurveLayerCreate(s->kernel, row.n, s->set->nu, s->X, s->density, &s->curve));
     PetscCall(CellRowCorrect(&row, &of, field));
     PetscCall(CurveLayerDestroy(&s->curve));
@@ -199,14 +200,17 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], 
 PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Vec F, Vec X,
                                   PetscReal *const field[3]) {
   const Grid g = set->markers->grid;
+  const FarCell far = FarCoefficients(set->markers->kernel);
   OffsetTable pressure = {0};
   LayerCells s = {.set = set,
                   .kernel = &stokeslet,
+                  .summed = SUMMED_SINGLE,
+                  .far = &far,
+                  .find = SingleSources,
                   .answer = {{{lattice, OFFSET_UU, {0, 0}}, {lattice, OFFSET_VU, {1, -1}}}, /* StencilFourSums */
                              {{lattice, OFFSET_VU, {0, 0}}, {lattice, OFFSET_VV, {0, 0}}},
                              {{&pressure, OFFSET_UU, {0, 0}}, {&pressure, OFFSET_VV, {0, 0}}}},
-                  .scale = {1 / set->nu, 1 / set->nu, 1 / g->h},
-                  .far = FarCoefficients(set->markers->kernel)};
+                  .scale = {1 / set->nu, 1 / set->nu, 1 / g->h}};
   PetscFunctionBeginUser;
   if (!g->free) PetscCall(LatticePressure(SUMMED_SINGLE + OFFSET_LAGS, &pressure));
   PetscCall(LayerCellsCorrect(&s, NULL, F, X, field));
@@ -219,7 +223,11 @@ PetscErrorCode DoubleCellsCorrect(const LayerSetting *set, const OffsetTable lat
   const Grid g = set->markers->grid;
   const PetscInt cells = g->n[0] * g->rows[FIELD_P];
   OffsetTable pressure = {0};
-  LayerCells s = {.set = set, .kernel = &stresslet, .scale = {1 / g->h, 1 / g->h, set->nu / (g->h * g->h)}};
+  LayerCells s = {.set = set,
+                  .kernel = &stresslet,
+                  .summed = SUMMED_DOUBLE,
+                  .find = DoubleSources,
+                  .scale = {1 / g->h, 1 / g->h, set->nu / (g->h * g->h)}};
   PetscFunctionBeginUser;
   for (int c = 0; c < 3; c++)
     for (int q = 0; q < DIPOLE_COUNT; q++) {

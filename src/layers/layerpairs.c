@@ -21,14 +21,7 @@ PetscErrorCode LayerPairsCreate(const PairKernel *kernel, const LayerSetting *se
   }
   if (!set->markers->grid->free)
     PetscCall(WallImageCreate(kernel, set, lattice, half, velocities ? velocities->image : NULL, &f->image));
-  if (!kernel->force) PetscFunctionReturn(PETSC_SUCCESS);
-  NearFarMake(set->markers->kernel, &f->far);
-  for (int c = 0; c < 4; c++) PetscCall(PetscCalloc1(l->M + LANES, &f->fourth[c / 2][c % 2]));
-  PetscCall(PetscCalloc1(l->bodies, &f->logarithm));
-  for (PetscInt v = l->own; v < l->end && set->bodies; v++) {
-    PetscCall(PetscMalloc1(LayoutCount(l, v), &f->logarithm[v]));
-    kernel->logarithm(set->bodies->kind[v].type, LayoutCount(l, v), f->logarithm[v]);
-  }
+  if (kernel->create) PetscCall(kernel->create(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,12 +50,9 @@ static void PlaceVelocities(LayerPairs f) {
 }
 
 PetscErrorCode LayerPairsPlace(LayerPairs f) {
-  const Markers m = f->set->markers;
   PetscFunctionBeginUser;
   if (f->owner) PlaceVelocities(f);
-  for (PetscInt k = 0; k < m->layout->M && !m->grid->free && f->kernel->force; k++)
-    for (int c = 0; c < 4; c++)
-      f->fourth[c / 2][c % 2][k] = f->stencil[2 * k + c / 2].fourth[c % 2] - f->far.fourth[c / 2 != c % 2];
+  if (f->kernel->place && !f->set->markers->grid->free) f->kernel->place(f);
   if (f->image) PetscCall(WallImagePlace(f->image, f->stencil, f->from.stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -78,7 +68,7 @@ void LayerPairLattice(LayerPairs f, PetscReal reach, PetscInt i, PetscInt j, con
     f->kernel->sums(f, i, j, cells, L);
     return;
   }
-  PairParts(f->kernel, f->set, x, y, K);
+  f->kernel->parts(f->set, x, y, K);
   f->kernel->far(f, i, j, PETSC_FALSE, cell * x, cell * y, C);
   for (int q = 0; q < f->kernel->places.parts; q++) L[q] = K[q][0] - C[q][0];
 }

@@ -165,7 +165,7 @@ static void NearBlockKernel(const void *context, int wall, const Lanes x[2], con
   WallImageSeen(f->set->markers->grid, wall, x, y, seen);
   seen[2] = -seen[2]; /* y is mirrored */
   WallImageFour(f->kernel, f->image, wall, PETSC_TRUE, seen, part);
-  PairContract(f->kernel, part, normal, K);
+  f->kernel->contract(part, normal, K);
 }
 
 /* Of half a block one of the two of each pair. */
@@ -229,7 +229,7 @@ PetscErrorCode NearBlockFill(LayerPairs f, const NearBlock *b, PetscBool exact, 
   PetscFunctionBeginUser;
   c.back = !b->symmetric || b->row > b->column;
   c.reach = f->kernel->reach[NearBlockIsSelf(b) ? NEAR_ONE : NEAR_TWO] * f->set->markers->grid->h;
-  if (!f->kernel->force && !c.exact) PetscCall(ShareFaces(f, b, &c, &faces));
+  if (f->from.stencil && !c.exact) PetscCall(ShareFaces(f, b, &c, &faces));
   for (int wall = 0; wall < 4; wall++) c.walls[wall] = f->image && CountsWall(f, b, wall);
   for (int dir = 0; dir < 2 && !b->symmetric && !c.exact; dir++) PetscCall(PetscCalloc1(r.count + LANES, &c.flux[dir]));
   do FillRow(f, b, &r, &faces, &c, s);

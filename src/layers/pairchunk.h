@@ -48,7 +48,7 @@ PAIR_INLINE void PairChunkExact(const PairKernel *const kernel, LayerPairs f, co
       WallImageFour(
           kernel, f->image, wall, PETSC_TRUE,
           (const Lanes[]){cell * LanesAt(c->d[1 - wall / 2] + k), c->back ? other : one, c->back ? one : other}, part);
-      PairContract(kernel, part, c->N, image);
+      kernel->contract(part, c->N, image);
       for (int q = 0; q < 4; q++) K[q] += image[q];
     }
     for (int q = 0; q < 4; q++) LanesPut(K[q], to[q] + k);
@@ -61,7 +61,7 @@ PAIR_INLINE void PairChunkFar(const PairKernel *const kernel, LayerPairs f, Pair
   for (PetscInt k = 0; k < c->n; k += LANES) {
     Lanes part[PAIR_PARTS], C[4];
     kernel->far(f, c->i, c->j + k, c->back, cell * LanesAt(c->d[0] + k), cell * LanesAt(c->d[1] + k), part);
-    PairContract(kernel, part, c->N, C);
+    kernel->contract(part, c->N, C);
     for (int q = 0; q < 4; q++) LanesPut(C[q], c->C[q] + k);
   }
 }
@@ -75,7 +75,7 @@ PAIR_INLINE void PairChunkParts(const PairKernel *const kernel, LayerPairs f, co
   Lanes C[PAIR_PARTS];
   for (int q = 0; q < parts; q++) L[q] = wall[q] = (Lanes){0};
   if (!c->plain && LanesAny(~near)) {
-    PairParts(kernel, f->set, x, y, L);
+    kernel->parts(f->set, x, y, L);
     kernel->far(f, c->i, c->j + k, c->back, cell * x, cell * y, C);
     for (int q = 0; q < parts; q++) L[q] -= C[q];
   }
@@ -105,8 +105,8 @@ PAIR_INLINE void PairChunkNear(const PairKernel *const kernel, LayerPairs f, Pai
     if (c->plain && !LanesAny(near)) continue;
     PairChunkFree(kernel, f, c, k, K);
     PairChunkParts(kernel, f, c, k, near, part, wall);
-    PairContract(kernel, part, c->N, L);
-    PairContract(kernel, wall, c->N, W);
+    kernel->contract(part, c->N, L);
+    kernel->contract(wall, c->N, W);
     for (int q = 0; q < 4; q++) {
       Lanes C = LanesWhere(meant, K[q] - L[q] + W[q]);
       if (c->plain) C += LanesWhere(~near, LanesAt(c->C[q] + k));
@@ -138,7 +138,7 @@ PAIR_INLINE void PairChunkImages(const PairKernel *const kernel, LayerPairs f, P
       WallImageFour(
           kernel, f->image, wall, PETSC_FALSE,
           (const Lanes[]){cell * LanesAt(c->d[1 - wall / 2] + k), c->back ? other : one, c->back ? one : other}, part);
-      PairContract(kernel, part, c->N, C);
+      kernel->contract(part, c->N, C);
       for (int q = 0; q < 4; q++) LanesPut(LanesAt(c->C[q] + k) + C[q], c->C[q] + k);
     }
   }

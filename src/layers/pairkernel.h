@@ -10,8 +10,7 @@
        r_j/(2 pi r^2),      [2 (r.N) r_j/r^4 - N_j/r^2]/pi.
 
    A pair has a matrix K of velocities: xx, yy, xy (x to a source along y), yx. A kernel is one file with one
-   PairKernel: stokeslet.c, stresslet.c. What sources that are no forces need besides, a normal, lies where `force` is
-   asked for. Nothing here crosses ranks. */
+   PairKernel: stokeslet.c, stresslet.c. Nothing here crosses ranks. */
 #pragma once
 #include "layers/imagetable.h"
 #include "layers/layersetting.h"
@@ -21,18 +20,23 @@ typedef struct _p_LayerPairs *LayerPairs;
 typedef struct _p_PairChunk PairChunk;
 
 #define PAIR_PARTS IMAGE_MOST_PARTS /* most parts: two components of a velocity for each number of a source */
-enum { NEAR_ONE, NEAR_TWO };        /* markers of one body, of two */
+enum { NEAR_ONE, NEAR_TWO, NEAR_BOX, NEAR_KINDS }; /* markers of one body, of two, places of a box part */
 
 /* In x, y and N four pairs; lengths in the unit whose logarithm is zero. Parts are what unit sources on the lattice
    give: of forces xx, yy, xy, yx; of dipoles u of xx, yy, xy, then v. */
 typedef struct {
   const char *name;
-  int sources;     /* numbers of a source on the lattice: 2 of a force, 3 of a tensor */
-  PetscBool force; /* the velocity is over the viscosity; else sources have N, and lattices give velocities over h */
-  PetscBool symmetric; /* K of a pair is the transpose of K with its ends exchanged: half of it is stored */
-  PetscReal reach[2];  /* cells up to which stencils are summed: markers of one body, of two */
+  int sources;           /* numbers of a source on the lattice: 2 of a force, 3 of a tensor */
+  int viscosity, length; /* powers of the viscosity and of a length in the velocity of a unit source of the lattice */
+  PetscReal level;       /* what ln of the unit of lengths adds to xx and yy of a unit source, for viscosity 1 */
+  PetscBool symmetric;   /* K of a pair is the transpose of K with its ends exchanged: half of it is stored */
+  PetscReal reach[NEAR_KINDS];                                      /* cells up to which stencils are summed */
   void (*velocity)(Lanes x, Lanes y, const Lanes N[2], Lanes K[3]); /* xx, yy, xy = yx */
   void (*pressure)(Lanes x, Lanes y, const Lanes N[2], Lanes P[2]); /* over the viscosity */
+
+  /* The parts of unit sources in unbounded fluid, x and y in lengths, and K of the parts. */
+  void (*parts)(const LayerSetting *set, Lanes x, Lanes y, Lanes part[]);
+  void (*contract)(const Lanes part[], const Lanes N[2], Lanes K[4]);
 
   /* A closed or open curve of n markers: what its quadrature adds to xx and yy of markers that are k apart, own[n], for
      viscosity 1 (NULL: nothing); D[3 n] = K of each marker with itself, own[0] included. */
@@ -41,7 +45,10 @@ typedef struct {
                              const PetscReal X[], const PetscReal own[], PetscReal D[]);
 
   /* L, the lattice's parts of markers i and j by sums over stencils, `cells` added to their offset; C = K - L of four
-     distant pairs, i with j .. j + 3, x and y in cells; back: from i to these. */
+     distant pairs, i with j .. j + 3, x and y in cells; back: from i to these. create, place: what these and the
+     quadrature keep in the pairs; NULL: nothing. */
+  PetscErrorCode (*create)(LayerPairs pairs);
+  void (*place)(LayerPairs pairs);
   void (*sums)(LayerPairs pairs, PetscInt i, PetscInt j, const PetscInt cells[2], PetscReal L[]);
   void (*far)(LayerPairs pairs, PetscInt i, PetscInt j, PetscBool back, Lanes x, Lanes y, Lanes C[]);
 
@@ -60,42 +67,12 @@ typedef struct {
 
 PETSC_EXTERN const PairKernel stokeslet, stresslet;
 
-/* PairFree - K of four pairs in unbounded fluid: xx, yy, xy; x, y and N in lengths. PairPressure - the pressure's parts
-   by the source's two components. Not collective. */
+/* PairFree - K of four pairs in unbounded fluid: xx, yy, xy; x, y and N in lengths. Not collective. */
 static inline void PairFree(const PairKernel *k, const LayerSetting *set, Lanes x, Lanes y, const Lanes N[2],
                             Lanes K[3]) {
-  const PetscReal over = 1 / set->unit;
+  const PetscReal over = 1 / set->unit, scale = PetscPowRealInt(set->nu, k->viscosity);
   k->velocity(over * x, over * y, (const Lanes[2]){over * N[0], over * N[1]}, K);
-  for (int q = 0; q < 3 && k->force; q++) K[q] *= 1 / set->nu;
-}
-
-/* PairParts - the parts of unit sources in unbounded fluid, which PairContract makes K of: of forces themselves, of
-   tensors T = (2 J_x N_x, 2 J_y N_y, J_x N_y + J_y N_x). Not collective. */
-static inline void PairContract(const PairKernel *k, const Lanes part[], const Lanes N[2], Lanes K[4]) {
-  if (k->force) {
-    for (int q = 0; q < 4; q++) K[q] = part[q];
-    return;
-  }
-  const Lanes *u = part, *v = part + DIPOLE_COUNT;
-  K[0] = 2 * N[0] * u[DIPOLE_XX] + N[1] * u[DIPOLE_XY];
-  K[1] = 2 * N[1] * v[DIPOLE_YY] + N[0] * v[DIPOLE_XY];
-  K[2] = 2 * N[1] * u[DIPOLE_YY] + N[0] * u[DIPOLE_XY];
-  K[3] = 2 * N[0] * v[DIPOLE_XX] + N[1] * v[DIPOLE_XY];
-}
-static inline void PairParts(const PairKernel *k, const LayerSetting *set, Lanes x, Lanes y, Lanes part[]) {
-  const Lanes one = 1 - (Lanes){0}, none = {0};
-  Lanes K[2][3];
-  PairFree(k, set, x, y, (const Lanes[2]){one, none}, K[0]);
-  if (k->force) {
-    for (int q = 0; q < 4; q++) part[q] = K[0][PetscMin(q, 2)];
-    return;
-  }
-  PairFree(k, set, x, y, (const Lanes[2]){none, one}, K[1]);
-  for (int c = 0; c < 2; c++) {
-    part[DIPOLE_COUNT * c + DIPOLE_XX] = 0.5 * K[0][c ? 2 : 0];
-    part[DIPOLE_COUNT * c + DIPOLE_YY] = 0.5 * K[1][c ? 1 : 2];
-    part[DIPOLE_COUNT * c + DIPOLE_XY] = K[c][2];
-  }
+  for (int q = 0; q < 3; q++) K[q] *= scale;
 }
 
 /* StokesletFour, StressletFour - the velocities of the two kernels, the latter zero at the source itself; StokesletOne

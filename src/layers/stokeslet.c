@@ -65,6 +65,36 @@ static PetscErrorCode StokesletDiagonal(const LayerSetting *set, const CurveKind
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PAIR_INLINE void StokesletParts(const LayerSetting *set, Lanes x, Lanes y, Lanes part[]) {
+  Lanes S[3];
+  PairFree(&stokeslet, set, x, y, (const Lanes[2]){{0}, {0}}, S);
+  for (int q = 0; q < 4; q++) part[q] = S[PetscMin(q, 2)];
+}
+
+PAIR_INLINE void StokesletContract(const Lanes part[], const Lanes N[2], Lanes K[4]) {
+  for (int q = 0; q < 4; q++) K[q] = part[q];
+}
+
+/* The closed form of distant pairs, and the quadrature of the own bodies. */
+static PetscErrorCode StokesletCreate(LayerPairs f) {
+  const Layout l = f->set->markers->layout;
+  PetscFunctionBeginUser;
+  NearFarMake(f->set->markers->kernel, &f->far);
+  for (int c = 0; c < 4; c++) PetscCall(PetscCalloc1(l->M + LANES, &f->fourth[c / 2][c % 2]));
+  PetscCall(PetscCalloc1(l->bodies, &f->logarithm));
+  for (PetscInt v = l->own; v < l->end && f->set->bodies; v++) {
+    PetscCall(PetscMalloc1(LayoutCount(l, v), &f->logarithm[v]));
+    StokesletLogarithm(f->set->bodies->kind[v].type, LayoutCount(l, v), f->logarithm[v]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void StokesletPlace(LayerPairs f) {
+  for (PetscInt k = 0; k < f->set->markers->layout->M; k++)
+    for (int c = 0; c < 4; c++)
+      f->fourth[c / 2][c % 2][k] = f->stencil[2 * k + c / 2].fourth[c % 2] - f->far.fourth[c / 2 != c % 2];
+}
+
 static void StokesletSums(LayerPairs f, PetscInt i, PetscInt j, const PetscInt cells[2], PetscReal L[]) {
   StencilFourSums(f->lattice, &f->stencil[2 * i], &f->stencil[2 * j], cells, L);
   for (int c = 0; c < 4; c++) L[c] = (L[c] - (c < 2 ? f->image->logarithm : 0)) / f->set->nu;
@@ -191,13 +221,18 @@ static void StokesletFill(LayerPairs f, PairChunk *c) {
 const PairKernel stokeslet = {
     .name = "stokeslet",
     .sources = 2,
-    .force = PETSC_TRUE,
+    .viscosity = -1,
+    .level = 1 / (4 * PETSC_PI),
     .symmetric = PETSC_TRUE,
-    .reach = {[NEAR_ONE] = 12, [NEAR_TWO] = 10},
+    .reach = {[NEAR_ONE] = 12, [NEAR_TWO] = 10, [NEAR_BOX] = 12},
     .velocity = StokesletFour,
     .pressure = StokesletPressure,
+    .parts = StokesletParts,
+    .contract = StokesletContract,
     .logarithm = StokesletLogarithm,
     .diagonal = StokesletDiagonal,
+    .create = StokesletCreate,
+    .place = StokesletPlace,
     .sums = StokesletSums,
     .far = StokesletFar,
     .fill = StokesletFill,

@@ -147,14 +147,17 @@ PetscErrorCode WallImagePlace(WallImage m, const PaddedStencil velocity[], const
   PetscFunctionBeginUser;
   m->velocity = velocity;
   m->source = source;
-  for (int wall = 0; wall < 4; wall++)
-    for (PetscInt k = 0; k < m->markers->layout->M && m->end[wall]; k++) {
+  for (int wall = 0; wall < 4; wall++) {
+    if (!m->end[wall]) continue;
+    if (source && !m->row[wall]) PetscCall(PetscMalloc1(m->kernel->sources * m->markers->layout->M, &m->row[wall]));
+    for (PetscInt k = 0; k < m->markers->layout->M; k++) {
       const PetscReal X = m->markers->X[2 * k + wall / 2];
       const PetscReal y = (wall % 2 ? g->hi[wall / 2] - X : X - g->lo[wall / 2]) / g->h;
       if (m->owner) m->y[wall][k] = y;
       if (m->owner) PlaceEnd(m->markers, y, m->form.moment[1].second, &m->end[wall][k]);
       if (m->row[wall]) PlaceDipole(y, m->row[wall] + DIPOLE_COUNT * k);
     }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,8 +171,8 @@ PetscErrorCode WallImageCreate(const PairKernel *kernel, const LayerSetting *set
   *out = m;
   m->kernel = kernel;
   m->markers = set->markers;
-  m->scale = 1 / (kernel->force ? set->nu : g->h);
-  m->logarithm = kernel->force ? PetscLogReal(g->h / set->unit) / (4 * PETSC_PI) : 0;
+  m->scale = PetscPowRealInt(set->nu, kernel->viscosity) * PetscPowRealInt(g->h, kernel->length);
+  m->logarithm = kernel->level * PetscLogReal(g->h / set->unit);
   m->table = half;
   m->owner = velocities ? PETSC_FALSE : PETSC_TRUE;
   kernel->image_make(set->markers->kernel, &m->form);
@@ -186,7 +189,6 @@ PetscErrorCode WallImageCreate(const PairKernel *kernel, const LayerSetting *set
       m->end[wall] = velocities->end[wall];
       m->y[wall] = velocities->y[wall];
     }
-    if (!kernel->force) PetscCall(PetscMalloc1(kernel->sources * M, &m->row[wall]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,11 +35,10 @@ PETSC_EXTERN NearBounds NearBoundsOf(PetscInt n, const PetscReal X[]);
 typedef struct _p_WallImage *WallImage;
 struct _p_WallImage {
   const PairKernel *kernel;
-  Markers markers; /* borrowed */
-  PetscReal scale; /* of parts seen from a wall in cells: 1 over the viscosity, or over h */
-  PetscReal
-      logarithm; /* of forces ln(h/unit)/(4 pi): what a Stokeslet whose unit of length is `unit`, the h of the
-                    run's grid, has less than one in cells of this grid; no number depends on the unit of lengths */
+  Markers markers;     /* borrowed */
+  PetscReal scale;     /* of parts seen from a wall in cells: 1 over the viscosity, or over h */
+  PetscReal logarithm; /* of forces ln(h/unit)/(4 pi): what a Stokeslet whose unit of length is `unit`, the h of the
+                          run's grid, has less than one in cells of this grid; no number depends on that unit */
   ImageKernel form;
   const ImageTable *table; /* NULL without walls */
   ImageTable *made;        /* the table, if it is not borrowed */

@@ -85,7 +85,7 @@ static void BoxGridLattice(BoxGrid *b, PetscInt i, PetscInt j, PetscReal L[2][DI
   const PairKernel *k = b->pairs->kernel;
   PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, free[PAIR_PARTS], C[PAIR_PARTS] = {0};
   const PetscReal fade = BoxImage(b->axis, d);
-  LayerPairLattice(b->pairs, k->force ? k->reach[NEAR_ONE] : BOX_LATTICE_CELLS, i, j, d, free);
+  LayerPairLattice(b->pairs, k->reach[NEAR_BOX], i, j, d, free);
   WallImageAdd(b->pairs->image, NULL, i, j, d, free, C);
   if (b->lattice->whole) WallImageAddExact(b->pairs->image, i, j, d, -1, C);
   for (int q = 0; q < k->places.parts; q++) /* as seen from a wall along x */

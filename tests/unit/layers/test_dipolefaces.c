@@ -52,7 +52,7 @@ static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
       Lanes part[PAIR_PARTS], M[4];
       StencilDipoleSums(lattice, &response[2 * i], dipole[j], a->cells, K);
       for (int q = 0; q < 2 * DIPOLE_COUNT; q++) part[q] = K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] + (Lanes){0};
-      PairContract(&stresslet, part, N, M);
+      stresslet.contract(part, N, M);
       for (int q = 0; q < 4; q++) {
         worst = PetscMax(worst, PetscAbsReal(answer[q][i] - M[q][0]));
         most = PetscMax(most, PetscAbsReal(M[q][0]));

@@ -14,7 +14,7 @@ static void FlowOf(const PairKernel *k, int c, const PetscReal x[2], PetscReal f
   k->pressure(x[0] + zero, x[1] + zero, normal, P);
   flow[0] = K[c ? 2 : 0][0];
   flow[1] = K[c ? 1 : 2][0];
-  flow[2] = P[c][0] * (k->force ? 1 : set.nu);
+  flow[2] = P[c][0] * PetscPowRealInt(set.nu, k->viscosity + 1);
 }
 
 /* nu LAPLACE u = GRAD p and DIV u = 0 at x, by differences of fourth order. */
@@ -90,8 +90,8 @@ static PetscErrorCode CheckParts(const PairKernel *k) {
   Lanes part[PAIR_PARTS], K[4], free[3];
   PetscReal worst = 0;
   PetscFunctionBeginUser;
-  PairParts(k, &set, x, y, part);
-  PairContract(k, part, normal, K);
+  k->parts(&set, x, y, part);
+  k->contract(part, normal, K);
   PairFree(k, &set, x, y, normal, free);
   for (int q = 0; q < 4; q++)
     for (int t = 0; t < LANES; t++) worst = PetscMax(worst, PetscAbsReal(K[q][t] - free[PetscMin(q, 2)][t]));
