@@ -39,6 +39,16 @@ PetscErrorCode ForcesPlace(Forces f, Instant at, const PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ForcesExpect(Forces f, PetscReal nu, PetscReal a0, Vec tension) {
+  const PetscScalar *a;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(tension, &a));
+  for (PetscInt k = 0; k < f->n; k++)
+    if (f->force[k].expect) f->force[k].expect(f->force[k].context, nu, a0, a);
+  PetscCall(VecRestoreArrayRead(tension, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ForcesRate(Forces f, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
   PetscFunctionBeginUser;
   FORCES_EACH(f, rate, alpha, V, F);

@@ -25,6 +25,9 @@ typedef struct {
   ForceReach reach;
   void *context;                                                    /* first argument of all operations */
   PetscErrorCode (*place)(void *, Instant at, const PetscReal X[]); /* at X*[2M] of all vesicles, at an instant */
+  /* until it is placed again, with this expected tension[n] of the own vesicles and this a0, in fluid of viscosity nu
+   */
+  void (*expect)(void *, PetscReal nu, PetscReal a0, const PetscScalar tension[]);
   PetscErrorCode (*rate)(void *, PetscReal alpha, const PetscScalar V[], PetscScalar F[]);  /* F += alpha K V */
   PetscErrorCode (*known)(void *, PetscReal alpha, const PetscScalar X[], PetscScalar F[]); /* F += alpha k, with X* */
   /* K[2n][2n] += alpha times the part of K of one vesicle, for dense blocks of the preconditioner */
@@ -57,6 +60,7 @@ PETSC_EXTERN ForceReach ForcesReach(Forces forces);
 /* Operations of all forces, in the order of the list; ForcesLaw - of those from the first reach to the last one.
    Collective. */
 PETSC_EXTERN PetscErrorCode ForcesPlace(Forces forces, Instant at, const PetscReal X[]);
+PETSC_EXTERN PetscErrorCode ForcesExpect(Forces forces, PetscReal nu, PetscReal a0, Vec tension);
 PETSC_EXTERN PetscErrorCode ForcesRate(Forces forces, PetscReal alpha, const PetscScalar V[], PetscScalar F[]);
 PETSC_EXTERN PetscErrorCode ForcesKnown(Forces forces, PetscReal alpha, const PetscScalar X[], PetscScalar F[]);
 PETSC_EXTERN PetscErrorCode ForcesDense(Forces forces, PetscInt vesicle, PetscReal alpha, PetscReal K[]);

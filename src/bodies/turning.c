@@ -15,12 +15,11 @@ static PetscReal TurningReturn(Membrane m, PetscInt v, PetscReal nu, PetscReal a
   return largest;
 }
 
-PetscErrorCode TurningExpect(Forces forces, PetscReal nu, PetscReal a0, Vec expected) {
-  const Turning *t = (const Turning *)ForcesFind(forces, "turning");
+/* The expected tension, where it is positive, pulls along the new edges as far as waves of the membrane would otherwise
+   be unstable in the step. */
+static void TurningExpect(void *context, PetscReal nu, PetscReal a0, const PetscScalar sigma[]) {
+  const Turning *t = (const Turning *)context;
   const Layout l = t->membrane->layout;
-  const PetscScalar *sigma;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(expected, &sigma));
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt at = LayoutOffset(l, v), n = LayoutCount(l, v);
     PetscReal most = 0;
@@ -28,8 +27,6 @@ PetscErrorCode TurningExpect(Forces forces, PetscReal nu, PetscReal a0, Vec expe
     const PetscReal part = 1 - EXPLICIT / PetscMax(EXPLICIT, TurningReturn(t->membrane, v, nu, a0, most));
     for (PetscInt k = at; k < at + n; k++) t->tension[k] = part * PetscMax(0, sigma[k]);
   }
-  PetscCall(VecRestoreArrayRead(expected, &sigma));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode TurningPlace(void *context, Instant at, const PetscReal X[]) {
@@ -81,6 +78,7 @@ PetscErrorCode ForceCreate_Turning(Bodies bodies, Grid grid, Scene scene, Force 
                    .reach = FORCE_WITHIN,
                    .context = t,
                    .place = TurningPlace,
+                   .expect = TurningExpect,
                    .rate = TurningRate,
                    .known = TurningKnown,
                    .law = TurningLaw,

@@ -11,8 +11,3 @@ typedef struct {
   Membrane membrane;  /* borrowed */
   PetscReal *tension; /* [n] of the own vesicles (length^3/time^2) */
 } Turning;
-
-/* TurningExpect - until the forces are placed again, let the expected tension (edge vector), where it is positive, pull
-   along the new edges, as far as waves of the membrane would otherwise be unstable in a step with a0, in fluid of the
-   viscosity nu. Not collective. */
-PETSC_EXTERN PetscErrorCode TurningExpect(Forces forces, PetscReal nu, PetscReal a0, Vec expected);

@@ -104,7 +104,7 @@ static void AddEntry(const BoxGrid *b, int ci, int cj, const PetscInt a[2], cons
                      PetscReal W[]) {
   const BoxAxis *axis = b->axis;
   const PetscBool dipoles = b->lattice->dipole ? PETSC_TRUE : PETSC_FALSE;
-  const int parts = dipoles ? 3 : 2;
+  const int parts = b->pairs->kernel->sources;
   for (int my = 0; my <= (int)axis[1].wall; my++)
     for (int mx = 0; mx <= (int)axis[0].wall; mx++) {
       PetscInt pair[2];
@@ -170,7 +170,7 @@ static PetscErrorCode AddSource(BoxGrid *b, const PetscInt s[2], PetscReal scale
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(x->places * y->places, &L));
   for (PetscInt i = 0; i < x->places * y->places; i++) BoxGridLattice(b, i, j, L[i]);
-  for (int cj = 0; cj < (b->lattice->dipole ? DIPOLE_COUNT : 2); cj++) {
+  for (int cj = 0; cj < b->pairs->kernel->sources; cj++) {
     if (cj == 1 && IsSquare(b->axis)) continue;
     PetscCall(BoxGridRespond(b, j, cj));
     PetscCall(VecGetArrayRead(b->U, &U));

@@ -1,5 +1,4 @@
 /* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
-#include "bodies/turning.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
 
@@ -23,7 +22,7 @@ static PetscErrorCode TurnEdges(Scheme s, Coupled *d) {
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   BDFExtrapolation(count, h->step, weight);
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), d->next.sigma));
-  PetscCall(TurningExpect(s->coupling->forces, s->fluid->nu, s->fluid->a0, d->next.sigma));
+  PetscCall(ForcesExpect(s->coupling->forces, s->fluid->nu, s->fluid->a0, d->next.sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
