@@ -11,7 +11,7 @@ static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], cons
   const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
   PetscReal *marker = c->work;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->count; k++) SharedShapeSources(s, &s->shape[k], U, sigma, &c->answer);
+  for (PetscInt k = 0; k < s->count; k++) PetscCall(SharedShapeSources(s, &s->shape[k], U, sigma, &c->answer));
   for (PetscInt v = l->own; v < l->end; v++) { /* forces to the coarse points, P^T F, in the frame of the shape */
     const CurvePoints *p = &s->shape[s->of[v]].curve;
     const PetscInt at = 2 * LayoutOffset(coarse, v);

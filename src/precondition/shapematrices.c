@@ -33,7 +33,7 @@ static PetscErrorCode AnswerSources(SharedShapes s, const SharedShape *q, Membra
   (void)PetscArrayzero(F, 2 * n);
   LawForce(law, 1, V + 2 * n, F);
   PetscCall(DenseMultAdd(PETSC_FALSE, 2 * n, 2 * n, 1, K, V, F));
-  if (q->sources.rows == 2 * n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (q->rows == 2 * n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscReal *J = F + 2 * n;
   (void)PetscArraycpy(J, V, 2 * n);
   MembraneLabelDerivative(law->membrane, q->like, q->treading / s->a0, V, J);
@@ -63,21 +63,18 @@ static PetscErrorCode MakeShapePoints(SharedShapes s, SharedShape *q) {
 static PetscErrorCode StoreShape(SharedShapes s, SharedShape *q, MembraneLaw law, const PetscReal V[],
                                  const PetscReal sigma[]) {
   const PetscInt n = law->n, all = 3 * n;
-  PetscReal *answer, *F, *K;
+  PetscReal *K;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(all, &answer, q->sources.rows, &F));
   PetscCall(PetscCalloc1(4 * n * n, &K));
   PetscCall(ForcesDense(s->coupling->forces, q->like, 1 / s->a0, K));
-  PetscCall(PetscMalloc1(PackedMatrixSize(&q->inverse), &q->inverse.value));
-  PetscCall(PetscMalloc1(PackedMatrixSize(&q->sources), &q->sources.value));
+  PetscCall(PetscMalloc1(all * all, &q->inverse));
+  PetscCall(PetscMalloc1(q->rows * all, &q->sources));
   for (PetscInt j = 0; j < all; j++) {
+    PetscReal *answer = q->inverse + j * all;
     PetscCall(PetscArraycpy(answer, V + j * 2 * n, 2 * n));
     PetscCall(PetscArraycpy(answer + 2 * n, sigma + j * n, n));
-    PetscCall(AnswerSources(s, q, law, K, answer, F));
-    PackedMatrixSetColumn(&q->inverse, j, answer);
-    PackedMatrixSetColumn(&q->sources, j, F);
+    PetscCall(AnswerSources(s, q, law, K, answer, q->sources + j * q->rows));
   }
-  PetscCall(PetscFree2(answer, F));
   PetscCall(PetscFree(K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,38 +117,44 @@ static PetscInt IntoFrame(SharedShapes s, PetscInt v, const PetscScalar U[], con
 }
 
 /* A matrix of a shape times the columns of the vesicles that take it: s->to. */
-static void ShapeProduct(SharedShapes s, const SharedShape *q, const PackedMatrix *A, const PetscScalar U[],
-                         const PetscScalar sigma[]) {
+static PetscErrorCode ShapeProduct(SharedShapes s, const SharedShape *q, const PetscReal A[], PetscInt rows,
+                                   const PetscScalar U[], const PetscScalar sigma[]) {
   PetscReal *x = s->from;
   PetscInt inner = 0;
+  PetscFunctionBeginUser;
   for (PetscInt k = q->begin; k < q->end; k++, x += inner) inner = IntoFrame(s, s->order[k], U, sigma, x);
-  PackedMatrixProduct(A, inner, q->end - q->begin, s->from, s->to);
+  PetscCall(DenseProduct(PETSC_FALSE, rows, q->end - q->begin, inner, A, s->from, s->to));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar U[], const PetscScalar sigma[],
+PetscErrorCode SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar U[], const PetscScalar sigma[],
                         const ShapeSources *sources) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
   const PetscReal *y = s->to;
-  ShapeProduct(s, q, &q->sources, U, sigma);
-  for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->sources)) {
+  PetscFunctionBeginUser;
+  PetscCall(ShapeProduct(s, q, q->sources, q->rows, U, sigma));
+  for (PetscInt k = q->begin; k < q->end; k++, y += q->rows) {
     const PetscInt v = s->order[k], at = 2 * LayoutOffset(l, v);
     RigidFitBack(&s->fit[v - l->own], 2, n, y, sources->force + at);
-    if (q->sources.rows > 2 * n)
+    if (q->rows > 2 * n)
       RigidFitBack(&s->fit[v - l->own], 2, n, y + 2 * n, sources->jump + at);
     else if (sources->jump)
-      (void)PetscArrayzero(sources->jump + at, 2 * n);
+      PetscCall(PetscArrayzero(sources->jump + at, 2 * n));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void SharedShapeSolve(SharedShapes s, const SharedShape *q, PetscScalar U[], PetscScalar sigma[]) {
+PetscErrorCode SharedShapeSolve(SharedShapes s, const SharedShape *q, PetscScalar U[], PetscScalar sigma[]) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
   const PetscReal *y = s->to;
-  ShapeProduct(s, q, &q->inverse, U, sigma);
-  for (PetscInt k = q->begin; k < q->end; k++, y += PackedMatrixRows(&q->inverse)) {
+  PetscFunctionBeginUser;
+  PetscCall(ShapeProduct(s, q, q->inverse, 3 * n, U, sigma));
+  for (PetscInt k = q->begin; k < q->end; k++, y += 3 * n) {
     const PetscInt v = s->order[k], at = LayoutOffset(l, v);
     RigidFitBack(&s->fit[v - l->own], 2, n, y, U + 2 * at);
     RigidFitBack(&s->fit[v - l->own], 1, n, y + 2 * n, sigma + at);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,7 +4,6 @@
 #include "precondition/coarsegrid.h"
 #include "problem/coupling.h"
 #include "precondition/curvepoints.h"
-#include "numerics/packedmatrix.h"
 #include "numerics/rigidfit.h"
 
 /* A shape: its curve, and on ranks that need them the matrices of its dense problem. */
@@ -14,8 +13,9 @@ typedef struct {
   PetscReal *X;       /* [2n] centred */
   PetscReal size[RIGIDFIT_SIZES];
   PetscInt begin, end;  /* own vesicles that take it: a range of the order */
-  PackedMatrix inverse; /* 3n x 3n: (r_V, r_s) to (V, sigma); without values: not made */
-  PackedMatrix sources; /* 2n x 3n: to their forces F; with viscosity contrast 4n x 3n, to F and their jumps J */
+  PetscReal *inverse;   /* 3n x 3n: (r_V, r_s) to (V, sigma); NULL: not made */
+  PetscReal *sources;   /* rows x 3n: to their forces F or, with viscosity contrast, to F and their jumps J */
+  PetscInt rows;        /* of sources: 2n, or 4n */
   PetscReal *self;      /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
   CurvePoints curve;    /* its coarse points */
   PetscReal *points;    /* [2q] their places */
@@ -50,6 +50,7 @@ PETSC_EXTERN PetscErrorCode SharedShapeMake(SharedShapes shapes, SharedShape *sh
 /* SharedShapeSources - the sources of the answers of each vesicle's dense problem to its own parts of U[2n] and
    sigma[n] = r_s; sigma NULL: 0. SharedShapeSolve - U and sigma become these answers, V and sigma. Entries of vesicles
    of other shapes stay as they are. Not collective. */
-PETSC_EXTERN void SharedShapeSources(SharedShapes shapes, const SharedShape *shape, const PetscScalar U[],
-                                     const PetscScalar sigma[], const ShapeSources *sources);
-PETSC_EXTERN void SharedShapeSolve(SharedShapes shapes, const SharedShape *shape, PetscScalar U[], PetscScalar sigma[]);
+PETSC_EXTERN PetscErrorCode SharedShapeSources(SharedShapes shapes, const SharedShape *shape, const PetscScalar U[],
+                                               const PetscScalar sigma[], const ShapeSources *sources);
+PETSC_EXTERN PetscErrorCode SharedShapeSolve(SharedShapes shapes, const SharedShape *shape, PetscScalar U[],
+                                             PetscScalar sigma[]);

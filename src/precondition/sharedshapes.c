@@ -17,7 +17,7 @@ PetscErrorCode SharedShapesCreate(const FluidSpec *spec, Coupling c, SharedShape
   s->coupling = c;
   for (PetscInt v = 0; v < l->bodies; v++) most = PetscMax(most, LayoutCount(l, v));
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
-  PetscCall(PetscMalloc2(3 * l->n, &s->from, 4 * l->n + PANEL_ROWS * (l->end - l->own), &s->to));
+  PetscCall(PetscMalloc2(3 * l->n, &s->from, 4 * l->n, &s->to));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
   PetscCall(CoarseGridCreate(spec, l, m->L0, c->markers->kernel->name, &s->coarse));
   if (s->coarse) PetscCall(InteractionsCreate(s, &s->cross));
@@ -26,8 +26,8 @@ PetscErrorCode SharedShapesCreate(const FluidSpec *spec, Coupling c, SharedShape
 
 static PetscErrorCode FreeShapeMatrices(SharedShape *q) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(q->inverse.value));
-  PetscCall(PetscFree(q->sources.value));
+  PetscCall(PetscFree(q->inverse));
+  PetscCall(PetscFree(q->sources));
   PetscCall(PetscFree(q->self));
   PetscCall(PetscFree(q->points));
   PetscCall(CurvePointsDestroy(&q->curve));
@@ -122,8 +122,7 @@ static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading
   SharedShape *q = &s->shape[s->count++];
   *q = (SharedShape){.like = like,
                      .treading = treading,
-                     .inverse = {.rows = 3 * n, .columns = 3 * n},
-                     .sources = {.rows = jumps ? 4 * n : 2 * n, .columns = 3 * n}};
+                     .rows = jumps ? 4 * n : 2 * n};
   PetscCall(PetscMalloc1(2 * n, &q->X));
   PetscCall(PetscArraycpy(q->X, X, 2 * n));
   RigidFitSizes(n, X, q->size);
@@ -196,7 +195,7 @@ static PetscErrorCode MakeShapeMatrices(SharedShapes s, PetscBool *failed) {
   }
   for (PetscInt k = 0; k < s->count && good; k++) {
     SharedShape *q = &s->shape[k];
-    if (q->end > q->begin && !q->inverse.value) PetscCall(SharedShapeMake(s, q, &good));
+    if (q->end > q->begin && !q->inverse) PetscCall(SharedShapeMake(s, q, &good));
   }
   PetscCall(AgreeFlag(s->coupling->membrane->layout->comm, good ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -219,7 +218,7 @@ PetscErrorCode SharedShapesFollow(SharedShapes s, PetscBool *failed) {
 PetscErrorCode SharedShapesSolve(SharedShapes s, PetscScalar U[], PetscScalar sigma[]) {
   PetscFunctionBeginUser;
   if (s->cross) PetscCall(InteractionsAdd(s->cross, sigma, U));
-  for (PetscInt k = 0; k < s->count; k++) SharedShapeSolve(s, &s->shape[k], U, sigma);
+  for (PetscInt k = 0; k < s->count; k++) PetscCall(SharedShapeSolve(s, &s->shape[k], U, sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,5 @@
 /* SharedShapes of many vesicles (docs/suspensions.md, Many vesicles): how a curve lies, the exact mobility of one
    curve, and a vesicle's problem solved by another's shape. */
-#include "numerics/packedmatrix.h"
 #include "precondition/sharedshapes.h"
 #include "layers/layerpairs.h"
 #include "facts.h"
@@ -275,30 +274,6 @@ static PetscErrorCode CheckMemory(void) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A packed matrix against sums, with rows and columns that do not fill its panels. */
-static PetscErrorCode CheckPackedMatrix(PetscInt rows, PetscInt columns, PetscInt inner, PetscInt count) {
-  PackedMatrix A = {.rows = rows, .columns = columns};
-  const PetscInt apart = PackedMatrixRows(&A);
-  PetscReal *a, *b, *c, error = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(PackedMatrixSize(&A), &A.value, rows, &a, inner * count, &b, apart * count, &c));
-  for (PetscInt j = 0; j < columns; j++) {
-    for (PetscInt i = 0; i < rows; i++) a[i] = sin(1.0 + (double)(i * columns + j));
-    PackedMatrixSetColumn(&A, j, a);
-  }
-  for (PetscInt k = 0; k < inner * count; k++) b[k] = cos(0.3 * (double)k);
-  PackedMatrixProduct(&A, inner, count, b, c);
-  for (PetscInt q = 0; q < count; q++)
-    for (PetscInt i = 0; i < rows; i++) {
-      PetscReal sum = 0;
-      for (PetscInt j = 0; j < inner; j++) sum += sin(1.0 + (double)(i * columns + j)) * b[q * inner + j];
-      error = PetscMax(error, fabs(sum - c[q * apart + i]));
-    }
-  CHECK(error < 1e-13 * (double)columns, "%d x %d packed times %d columns", (int)rows, (int)inner, (int)count);
-  PetscCall(PetscFree4(A.value, a, b, c));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode Facts(void) {
   const PetscReal angle[] = {2.1, -0.3, 0, 3.1};
   const PetscInt shift[] = {17, 44, 0, 1};
@@ -307,9 +282,6 @@ PetscErrorCode Facts(void) {
   for (PetscInt n = 8; n < 16; n++) PetscCall(CheckFit(n));
   PetscCall(CheckSelfLayer(45));
   PetscCall(CheckSelfLayer(44));
-  PetscCall(CheckPackedMatrix(8, 5, 5, 4));
-  PetscCall(CheckPackedMatrix(21, 14, 9, 7));
-  PetscCall(CheckPackedMatrix(3, 2, 1, 1));
   PetscCall(CheckSolve());
   PetscCall(CheckCross());
   PetscCall(CheckMemory());
