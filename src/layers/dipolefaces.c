@@ -27,10 +27,12 @@ PetscErrorCode DipoleFacesDestroy(DipoleFaces *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a unit part of nx x ny weights gives on `count` faces from `face` on along x, whole vectors: its column of
-   weights is summed first, which leaves one line of the table's numbers, then its row. */
-static inline void PartRow(const int nx, const int ny, const OffsetTable *t, int part, const PaddedStencil *s,
+/* What a unit part gives on `count` faces from `face` on along x, whole vectors: its column of weights is summed first,
+   which leaves one line of the table's numbers, then its row. */
+static inline void PartRow(const int part, const OffsetTable *t, const PaddedStencil dipole[DIPOLE_COUNT],
                            const PetscInt face[2], PetscInt count, PetscReal sum[]) {
+  const int nx = part == DIPOLE_XX ? 6 : part == DIPOLE_YY ? 4 : 5, ny = 10 - nx;
+  const PaddedStencil *s = &dipole[part];
   const PetscInt width = 2 * t->size[0] + 1, x = t->size[0] + face[0] - s->first[0] - (nx - 1),
                  y = t->size[1] + face[1] - s->first[1];
   const PetscReal *at = t->value[part] + y * width + x, *wx = s->weight[0] + KERNEL_MAX_POINTS,
@@ -54,9 +56,9 @@ static void DipoleFacesFill(const DipoleFaces *f, int c, const OffsetTable *t, c
   PetscReal xx[STENCIL_ROW], yy[STENCIL_ROW], xy[STENCIL_ROW];
   for (PetscInt r = 0; r < f->rows[c]; r++) {
     const PetscInt face[2] = {f->first[c][0] + cells[0], f->first[c][1] + cells[1] + r}, at = r * f->stride[c];
-    PartRow(6, 4, t, DIPOLE_XX, &dipole[DIPOLE_XX], face, f->columns[c], xx);
-    PartRow(4, 6, t, DIPOLE_YY, &dipole[DIPOLE_YY], face, f->columns[c], yy);
-    PartRow(5, 5, t, DIPOLE_XY, &dipole[DIPOLE_XY], face, f->columns[c], xy);
+    PartRow(DIPOLE_XX, t, dipole, face, f->columns[c], xx);
+    PartRow(DIPOLE_YY, t, dipole, face, f->columns[c], yy);
+    PartRow(DIPOLE_XY, t, dipole, face, f->columns[c], xy);
     for (PetscInt i = 0; i < f->columns[c]; i += LANES) {
       LanesPut(2 * N[0] * LanesAt(xx + i) + N[1] * LanesAt(xy + i), f->field[0] + at + i);
       LanesPut(2 * N[1] * LanesAt(yy + i) + N[0] * LanesAt(xy + i), f->field[1] + at + i);

@@ -127,8 +127,8 @@ static PetscErrorCode ShapeProduct(SharedShapes s, const SharedShape *q, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar U[], const PetscScalar sigma[],
-                        const ShapeSources *sources) {
+PetscErrorCode SharedShapeSources(SharedShapes s, const SharedShape *q, const PetscScalar U[],
+                                  const PetscScalar sigma[], const ShapeSources *sources) {
   const Layout l = s->coupling->membrane->layout;
   const PetscInt n = LayoutCount(l, q->like);
   const PetscReal *y = s->to;

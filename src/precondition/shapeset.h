@@ -12,13 +12,13 @@ typedef struct {
   PetscReal treading; /* label speed (1/time) */
   PetscReal *X;       /* [2n] centred */
   PetscReal size[RIGIDFIT_SIZES];
-  PetscInt begin, end;  /* own vesicles that take it: a range of the order */
-  PetscReal *inverse;   /* 3n x 3n: (r_V, r_s) to (V, sigma); NULL: not made */
-  PetscReal *sources;   /* rows x 3n: to their forces F or, with viscosity contrast, to F and their jumps J */
-  PetscInt rows;        /* of sources: 2n, or 4n */
-  PetscReal *self;      /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
-  CurvePoints curve;    /* its coarse points */
-  PetscReal *points;    /* [2q] their places */
+  PetscInt begin, end; /* own vesicles that take it: a range of the order */
+  PetscReal *inverse;  /* 3n x 3n: (r_V, r_s) to (V, sigma); NULL: not made */
+  PetscReal *sources;  /* rows x 3n: to their forces F or, with viscosity contrast, to F and their jumps J */
+  PetscInt rows;       /* of sources: 2n, or 4n */
+  PetscReal *self;     /* [2q][2q]: forces at q coarse points to what they do to the vesicle itself there, times -1 */
+  CurvePoints curve;   /* its coarse points */
+  PetscReal *points;   /* [2q] their places */
 } SharedShape;
 
 /* What membranes do to the fluid: forces F and, with viscosity contrast (else NULL), jumps J, [2n] of own vesicles. */

@@ -120,9 +120,7 @@ static PetscErrorCode AddShape(SharedShapes s, PetscInt like, PetscReal treading
   const PetscInt n = LayoutCount(m->layout, like);
   const PetscBool jumps = s->coupling->mobility->contrast && s->coupling->mobility->contrast->ratio[like] != 1;
   SharedShape *q = &s->shape[s->count++];
-  *q = (SharedShape){.like = like,
-                     .treading = treading,
-                     .rows = jumps ? 4 * n : 2 * n};
+  *q = (SharedShape){.like = like, .treading = treading, .rows = jumps ? 4 * n : 2 * n};
   PetscCall(PetscMalloc1(2 * n, &q->X));
   PetscCall(PetscArraycpy(q->X, X, 2 * n));
   RigidFitSizes(n, X, q->size);
