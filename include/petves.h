@@ -146,8 +146,10 @@ PETSC_EXTERN PetscErrorCode PetvesEndTogether(MPI_Comm comm, const char line[]);
 /* PetvesTemporaryFolder - make a folder in TMPDIR, path[PETSC_MAX_PATH_LEN]; all ranks get its name. */
 PETSC_EXTERN PetscErrorCode PetvesTemporaryFolder(MPI_Comm comm, char path[]);
 
-/* PetvesReadOptions - put a file of options into an options database (NULL: the default one). Collective. */
-PETSC_EXTERN PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[]);
+/* PetvesReadOptions - put a file of options (NULL: none) and n pairs of name and value (NULL: without), which win over
+   the file, into an options database (NULL: the default one); rank 0's count. Collective. */
+PETSC_EXTERN PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[], PetscInt n,
+                                              const char *const word[]);
 
 /* PetvesEnter, PetvesLeave - around calls of a program that has started PETSc itself and handles errors itself: between
    them an error's first message goes to message[PETVES_MAX_MESSAGE], nothing is printed, and `options` is the options

@@ -56,7 +56,7 @@ SIGNATURES = {
     "PetvesLeave": (Int,),
     "PetvesAgree": (_communicator, Int, _pointer(Int)),
     "PetvesEndTogether": (_communicator, _text),
-    "PetvesReadOptions": (_communicator, Handle, _text),
+    "PetvesReadOptions": (_communicator, Handle, _text, Int, _pointer(_text)),
     "PetvesTemporaryFolder": (_communicator, _text),
     "SimulationCreateWithFlow": (_communicator, ctypes.c_void_p, ctypes.c_void_p, _pointer(Handle)),
     "SimulationDestroy": (_pointer(Handle),),

@@ -134,11 +134,10 @@ class Simulation(State):
     def _set_options(self, options_file: str | Path | None, options: dict[str, Any]) -> None:
         """Fill the simulation's own options database."""
         comm = self._communicator
-        if options_file is not None:
-            self._call("PetvesReadOptions", comm, self._options, os.fsencode(options_file))
-        for name, value in options.items():
-            if value is not None:
-                self._call("PetscOptionsSetValue", self._options, f"-{name}".encode(), option_text(value))
+        path = None if options_file is None else os.fsencode(options_file)
+        given = [(f"-{name}".encode(), option_text(value)) for name, value in options.items() if value is not None]
+        words = (ctypes.c_char_p * (2 * len(given)))(*sum(given, ()))
+        self._call("PetvesReadOptions", comm, self._options, path, len(given), words)
         has = ctypes.c_int()
         self._call("PetscOptionsHasName", self._options, None, b"-output_dir", ctypes.byref(has))
         if not has.value:

@@ -21,7 +21,7 @@ static int ReadTyped(int argc, char **argv) {
     if (!rank) fprintf(stderr, "petves: error: %s\n", typed.error);
     error = PETSC_ERR_USER_INPUT;
   }
-  if (!error) error = (int)TypedInsert(&typed, NULL);
+  if (!error) error = (int)TypedInsert(&typed, scene_alternatives, NULL);
   TypedDestroy(&typed);
   return error;
 }
@@ -66,14 +66,15 @@ PetscErrorCode PetvesFinalize(void) {
   return error;
 }
 
-PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[]) {
+PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char path[], PetscInt n,
+                                 const char *const word[]) {
   Typed typed = {0};
   PetscMPIInt rank;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) TypedFile(&typed, path);
+  if (!rank) TypedCall(&typed, path, n, word);
   PetscCallMPI(TypedShare(&typed, comm));
-  if (!*typed.error) PetscCall(TypedInsert(&typed, options));
+  if (!*typed.error) PetscCall(TypedInsert(&typed, scene_alternatives, options));
   TypedDestroy(&typed);
   PetscCheck(!*typed.error, comm, PETSC_ERR_USER_INPUT, "%s", typed.error);
   PetscFunctionReturn(PETSC_SUCCESS);

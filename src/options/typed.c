@@ -295,10 +295,12 @@ static void TypedReadFile(Typed *t, const char *option, const char *path, const 
     TypedTakeText(t, &from, text, length);
   free(text);
   if (f) fclose(f);
+  TypedAppend(t, "", NULL);
 }
 
-void TypedFile(Typed *t, const char path[]) {
-  TypedReadFile(t, "-options_file", path, NULL);
+void TypedCall(Typed *t, const char path[], PetscInt n, const char *const word[]) {
+  if (path) TypedReadFile(t, "-options_file", path, NULL);
+  for (PetscInt k = 0; k < n; k++) TypedAppend(t, word[2 * k], word[2 * k + 1]);
 }
 
 /* PETSc's own file of the user, if there is one, unless the command line says -skip_petscrc. Those of the folder where
@@ -322,27 +324,39 @@ static void TypedTakeEnvironment(Typed *t) {
   for (char *p = line; p && *p; p++)
     if (*p == '\n' || *p == '\r') *p = ' ';
   if (line) TypedTakeLine(t, &from, line);
+  TypedAppend(t, "", NULL);
   free(line);
+}
+
+/* Where the entry after this one begins. */
+static size_t TypedNext(const Typed *t, size_t at) {
+  const char *const value = t->text + at + strlen(t->text + at) + 1;
+  return (size_t)(value + strlen(value) + 1 - t->text);
+}
+
+/* Blank the dash of an option of which a later source gives the alternative. */
+static void TypedReplace(Typed *t, const char *name, const char *alternative) {
+  size_t source = 0, end = 0;
+  for (size_t at = 0; at < t->used; at = TypedNext(t, at)) {
+    if (!t->text[at]) source = at;
+    if (!strcasecmp(t->text + at, alternative)) end = source;
+  }
+  for (size_t at = 0; at < end; at = TypedNext(t, at))
+    if (!strcasecmp(t->text + at, name)) t->text[at] = ' ';
 }
 
 void TypedCommand(Typed *t, int n, char **word) {
   const Source from = {.name = NULL};
   Word *words = (Word *)calloc((size_t)n + 1, sizeof(*words));
-  Typed rest = {0};
   if (!words) abort();
   for (int k = 0; k < n; k++) words[k] = (Word){.text = word[k]};
-  TypedTakeWords(&rest, &from, n, words, -1); /* the command line's own mistakes first */
-  (void)snprintf(t->error, sizeof(t->error), "%s", rest.error);
+  TypedTakeWords(t, &from, n, words, -1); /* the command line's own mistakes first */
+  t->used = 0;
   if (!*t->error) TypedTakePetscFile(t, n, word);
   TypedTakeEnvironment(t);
   for (int k = 0; k + 1 < n && !*t->error; k++)
     if (NameIsFile(word[k])) TypedReadFile(t, word[k], word[k + 1], NULL);
-  for (size_t at = 0; at < rest.used && !*t->error;) {
-    const char *name = rest.text + at, *value = name + strlen(name) + 1;
-    TypedAppend(t, name, *value ? value + 1 : NULL);
-    at = (size_t)(value + strlen(value) + 1 - rest.text);
-  }
-  TypedDestroy(&rest);
+  if (!*t->error) TypedTakeWords(t, &from, n, words, -1);
   free(words);
 }
 
@@ -361,12 +375,13 @@ int TypedShare(Typed *t, MPI_Comm comm) {
   return MPI_Bcast(t->text, (int)used, MPI_CHAR, 0, comm);
 }
 
-PetscErrorCode TypedInsert(const Typed *t, PetscOptions options) {
+PetscErrorCode TypedInsert(Typed *t, const char *const alternatives[][2], PetscOptions options) {
   PetscFunctionBeginUser;
-  for (size_t at = 0; at < t->used;) {
+  for (; (*alternatives)[0]; alternatives++)
+    for (int k = 0; k < 2; k++) TypedReplace(t, (*alternatives)[k], (*alternatives)[1 - k]);
+  for (size_t at = 0; at < t->used; at = TypedNext(t, at)) {
     const char *name = t->text + at, *value = name + strlen(name) + 1;
-    PetscCall(PetscOptionsSetValue(options, name, *value ? value + 1 : NULL));
-    at = (size_t)(value + strlen(value) + 1 - t->text);
+    if (*name == '-') PetscCall(PetscOptionsSetValue(options, name, *value ? value + 1 : NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -320,6 +320,16 @@ const OptionDefault scene_defaults[] = {
   {NULL}};
 /* clang-format on */
 
+const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
+                                             {"-flow_chi", "-flow_ca_stretching"},
+                                             {"-flow_ca_stretching", "-flow_rate"},
+                                             {"-flow_ca", "-flow_peak_velocity"},
+                                             {"-vesicle_semi_axes", "-vesicle_area"},
+                                             {"-vesicle_semi_axes", "-vesicle_reduced_area"},
+                                             {"-vesicle_markers", "-vesicle_spacing"},
+                                             {"-obstacle_center", "-obstacle_lattice"},
+                                             {NULL, NULL}};
+
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(OptionsRead(comm, "petves: inextensible vesicles in two-dimensional viscous flow", TABLE_SIZE, table,

@@ -6,6 +6,9 @@
    where the user gives no value, shown by -help and -view. */
 PETSC_EXTERN const OptionDefault scene_defaults[];
 
+/* Pairs of options that say one thing in two ways, the last ones NULL: of two sources the later one's counts. */
+PETSC_EXTERN const char *const scene_alternatives[][2];
+
 /* SceneReadOptions - every option of the table, or its default. Collective. */
 PETSC_EXTERN PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene);
 

@@ -69,6 +69,30 @@ def test_numbers_go_by_the_largest_vesicle(flow, power, name, tmp_path):
     assert float(VIEW.search(run.stdout)[2]) == pytest.approx(3, rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    "words, found",
+    [
+        ("-flow_chi 10", {"-flow_rate": 0.1 * np.sqrt(np.pi * 0.7) ** 3}),
+        ("-vesicle_semi_axes 0.3,0.3 -flow_rate 3", {"-flow_rate": 3, "-vesicle_semi_axes": 0.3}),
+        ("-vesicle_spacing 1", {"-vesicle_markers": 0, "-vesicle_spacing": 1}),
+    ],
+)
+def test_an_option_replaces_its_alternatives_of_a_file(words, found, tmp_path):
+    """What is typed, and what a file says behind those that it includes; two of one source are refused."""
+    inner, outer = tmp_path / "inner.opts", tmp_path / "outer.opts"
+    inner.write_text(
+        "-flow_type shear\n-flow_rate 2\n-vesicle_area 1\n-vesicle_reduced_area 0.7\n-vesicle_markers 45\n"
+    )
+    outer.write_text(f"-options_file {inner}\n" + words.replace(" -", "\n-"))
+    for name, scene in (("typed", f"-options_file {inner} {words}"), ("file", f"-options_file {outer}")):
+        given = options(run_petves(tmp_path / name, f"{scene} {SMALL} -time_end 0"))
+        for option, value in found.items():
+            assert float(given[option].split(",")[0]) == pytest.approx(value, rel=1e-9), (name, option)
+        assert ("-vesicle_area" in given) != ("-vesicle_semi_axes" in found)
+    done = run_petves(tmp_path / "both", f"-options_file {outer} -flow_chi 1 -flow_rate 1 {SMALL}", good=False)
+    assert done.errors == ["petves: error: -flow_chi 1.: given together with -flow_rate; allowed: one of them"]
+
+
 def test_red_cells_of_two_kinds_in_shear(tmp_path):
     """Areas and bending by -vesicle_mixture; chi by the largest of either."""
     scene = f"{SMALL} -domain_box -3,3,-3,3 -vesicle_shape biconcave -vesicle_count 3 -vesicle_center -1.5,0,0,0,1.5,0"

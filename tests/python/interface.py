@@ -138,6 +138,10 @@ def restarting():
         lambda: petves.Simulation.restart(checkpoint, domain_cells=(48, 48), flow=flow),
     )
     refused("output_overwrite", lambda: petves.Simulation(output_dir=FOLDER / "straight", **SMALL))
+    file = FOLDER / "straight/resolved.opts"  # has -vesicle_semi_axes, which a keyword's alternative replaces
+    with petves.Simulation(file, flow_type="shear", vesicle_area=1, output_dir=FOLDER / "area") as sim:
+        assert abs(sim.area - 1) < 1e-9
+    refused("given together", lambda: petves.Simulation(vesicle_area=1, **SMALL))
 
 
 def solvers():
