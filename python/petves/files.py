@@ -41,7 +41,7 @@ def read_file(path: Path, read: Callable[[Path], T], hint: str = "") -> T:
 
 def read_summary(path: Path) -> dict[str, Any]:
     """Return what summary.json has; read it with `read_file`."""
-    summary = json.loads(path.read_text())
+    summary = json.loads(path.read_text(errors="surrogateescape"))
     if not isinstance(summary, dict):
         raise ValueError("not an object")
     return summary

@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <fftw3.h>
 #include <hdf5.h>
+#include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -198,8 +199,11 @@ static void JsonPrintRow(FILE *f, const Record *record) {
   fprintf(f, "},\n");
 }
 
-/* Print when and where the run ended. */
+/* Print when and where the run ended, and the words that its process was started with. */
 static void JsonPrintOrigin(FILE *f) {
+  FILE *const started = fopen("/proc/self/cmdline", "r"); /* with a zero behind each word */
+  char *word = NULL;
+  size_t room = 0;
   char host[128] = "", date[32] = "";
   const time_t now = time(NULL);
   struct tm utc;
@@ -207,7 +211,14 @@ static void JsonPrintOrigin(FILE *f) {
   (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   fprintf(f, "  \"ended\": \"%s\",\n  \"host\": ", date);
   JsonPrintString(f, host);
-  fprintf(f, ",\n");
+  fprintf(f, ",\n  \"command\": [");
+  for (int k = 0; started && getdelim(&word, &room, 0, started) > 0; k++) {
+    fprintf(f, k ? ", " : "");
+    JsonPrintString(f, word);
+  }
+  fprintf(f, "],\n");
+  free(word);
+  if (started) fclose(started);
 }
 
 static PetscErrorCode JsonPrint(FILE *f, const void *what) {

@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 import h5py
 import numpy as np
 import pytest
-from harness import COLUMNS, PAPER, read_series, run_petves
+from harness import COLUMNS, PAPER, PETVES, read_series, run_petves
 
 pytestmark = pytest.mark.xdist_group("output")  # its tests share runs
 
@@ -157,6 +157,7 @@ def test_summary_agrees_with_series(run):
     assert summary["totals"]["steps"] == STEPS
     assert set(summary["wall_seconds"]) == {"run", "setup", "step", "fast_solve", "output"}
     assert set(summary["versions"]) == {"petves", "petsc", "fftw", "hdf5"} and summary["git_commit"]
+    assert summary["command"][:3] == [PETVES, "-output_dir", str(run.folder)] and "-domain_cells" in summary["command"]
 
 
 def test_resolved_options_repeat_the_run(run, tmp_path):
