@@ -48,28 +48,19 @@ def _add_look(command: argparse.ArgumentParser, *names: str) -> None:
 def _add_pictures(commands: argparse._SubParsersAction) -> None:
     plot = commands.add_parser("plot", help="draw a run's folder into pictures in that folder")
     plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
-    plot.add_argument(
-        "--time", type=float, help="field and tension, or what is asked for, at the saved time nearest to it"
-    )
-    plot.add_argument(
-        "--column", dest="columns", nargs="+", default=[], metavar="NAME", help="columns of series.csv over time"
-    )
-    plot.add_argument(
-        "--field", dest="fields", nargs="+", default=[], metavar="NAME", help="membranes over fields: vorticity, ..."
-    )
-    points = dict(nargs=2, type=float, action="append", default=[], metavar=("X", "Y"))
-    plot.add_argument(
-        "--point", dest="points", **points, help="u, v, p at a point over time; again for each further point"
-    )
+    plot.add_argument("--time", type=float, help="field and tension, or --line, --walls, at the nearest saved time")
+    names = dict(nargs="+", default=[], metavar="NAME")
+    plot.add_argument("--column", dest="columns", **names, help="columns of series.csv over time")
+    plot.add_argument("--field", dest="fields", **names, help="membranes over fields: vorticity, ...")
+    point = dict(nargs=2, type=float, action="append", default=[], metavar=("X", "Y"))
+    plot.add_argument("--point", dest="points", **point, help="u, v, p at a point over time; again for a further one")
     plot.add_argument("--line", nargs=4, type=float, metavar=("X", "Y", "X", "Y"), help="u, v, p along a line")
     plot.add_argument("--walls", action="store_true", help="the shear stress along the walls")
     _add_look(plot, "format", "dpi", "width", "cmap", "follow")
     film = commands.add_parser("movie", help="film the membrane over the flow: mp4 (with ffmpeg) or gif")
     film.add_argument("folder", metavar="DIR", help="the run's -output_dir")
     film.add_argument("--output", metavar="FILE", help="FILE.mp4 or FILE.gif (movie.mp4 or movie.gif in DIR)")
-    film.add_argument(
-        "--field", metavar="NAME", default="speed", help="under the membrane: speed, pressure, vorticity, ... (speed)"
-    )
+    film.add_argument("--field", metavar="NAME", default="speed", help="under it: speed, pressure, ... (speed)")
     film.add_argument("--rate", type=float, default=15, help="pictures a second (15)")
     film.add_argument("--every", type=int, default=1, metavar="N", help="one saved time in N (1)")
     film.add_argument("--from", type=float, dest="begin", metavar="TIME", help="first time (the first saved)")

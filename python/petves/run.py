@@ -135,9 +135,8 @@ class Run:
         From the suffixed columns of series.csv, or above 40 vesicles from vesicles.h5, whose last rows may be NaN while the run
         goes on.
         """
-        own = name if self.vesicles == 1 else f"{name}_1"
-        if own in self.series:
-            names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
+        names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
+        if names and names[0] in self.series:
             return np.stack([self.series[column] for column in names], axis=1)
         values = np.full((len(self.series["step"]), self.vesicles), np.nan)
         found = read_h5(self.folder / "vesicles.h5", lambda file: file[name][: len(values)] if name in file else None)

@@ -9,7 +9,7 @@ from harness import run_petves
 import petves
 from petves.curves import trigonometric
 from petves.run import CURVE, Run
-from petves.views.field import SOLID, draw_solids
+from petves.views.field import FIELDS, SOLID, draw_field, draw_membranes, draw_solids, reach
 from petves.views.figures import Look, legend_above, new_figure, new_sheet
 from petves.views.plot import is_steady, plot_conservation, plot_energy, plot_run
 from petves.views.report import report
@@ -92,6 +92,29 @@ def test_solids_are_filled(follow, run):
             column, row = axes.transData.transform((seen, 1.05)).astype(int)
             expected = bool(obstacles) and (around if x == 2.0 else solid)
             assert np.allclose(pixels[row, column], to_rgb(SOLID), atol=0.01) == expected, (x, len(obstacles))
+
+
+def test_colours_leave_out_a_few_cells(run):
+    """Where they have much more than all others; the bar then has arrows."""
+    values = np.linspace(-1, 2, 1000).reshape(20, 50)
+    assert reach(values) == 2 and reach(0 * values) == 1
+    values[0, :3] = -5
+    assert 1.9 < reach(values) < 2.1
+    window = Window(run, -1)
+    most = np.abs(FIELDS["speed"].values(window)).max()
+    for high, ends in ((None, "neither"), (1.01 * most, "neither"), (0.9 * most, "max")):
+        figure, (axes, bar) = new_figure(8, 4, columns=2)
+        image = draw_field(axes, FIELDS["speed"], window, Look(), high)
+        assert figure.colorbar(image, cax=bar).extend == ends, high
+
+
+def test_membranes_of_small_vesicles_are_thin(run):
+    widths = []
+    for inches in (8, 2, 0.1):
+        figure, (axes,) = new_figure(inches, 4)
+        limits = run.tension[-1].min(), run.tension[-1].max()
+        widths.append(draw_membranes(axes, run, -1, limits, "black")[-1].get_linewidth()[0])
+    assert widths[0] == 0.6 * 4 > widths[1] > widths[2] == 0.6
 
 
 @pytest.mark.parametrize("form, first", [("svg", b"<?xml"), ("pdf", b"%PDF")])

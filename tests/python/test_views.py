@@ -101,9 +101,10 @@ def test_pictures_of_a_time_and_of_columns(folders):
     names = [path.name for path in plot_run(folder, time=0.43)]
     assert names == ["field_t0.43.png", "tension_t0.43.png"]
     assert [path.name for path in plot_run(folder, columns=["gap", "area_1"])] == ["series.png"]
+    assert [path.name for path in plot_run(folder, time=0.43, columns=["gap"])] == ["series.png", *names]
     for words, line in (
         (dict(time=2), "time 2: not in the run; allowed: 0 to 0.8"),
-        (dict(columns=["gab"]), "column gab: unknown; gap is meant.; allowed: step, time, "),
+        (dict(columns=["gab"]), "column gab: not one of this run; gap is meant.; allowed: step, time, "),
         (dict(fields=["vortex"]), "field vortex: unknown; allowed: pressure, pressure_deviation, speed, vorticity, "),
         (dict(points=[(0, 3)]), "a point lies outside of the box; allowed: y from -2 to 2"),
     ):

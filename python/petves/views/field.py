@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 STREAMS = 1.1  # density of streamlines
 OVER_FIELD, OVER_STREAMS = 1.2, 1.5  # matplotlib's order: streamlines, solids; membranes at its 2
 SOLID = "#9a9a9a"  # colour of obstacles
+LEAST = 1.0  # points that a membrane is wide at least, where it is thinner than usual so as not to hide a small vesicle
 CROWD = 200  # vesicles from which outlines are thin
 KINDS = 4  # of vesicles, up to which each has a colour
+RARE = 1.5  # times what 99.5 % of the cells have at most: from there on colours leave the others out
 
 
 @dataclass
@@ -49,13 +51,21 @@ FIELDS = {
 TENSION = r"tension $\sigma$ (length$^3$/time$^2$)"
 
 
+def reach(values: np.ndarray) -> float:
+    """Return where colours end: at the largest value, or before it where few cells have much more than all others."""
+    most, usual = np.max(np.abs(values)), np.percentile(np.abs(values), 99.5)
+    return float(usual if 0 < RARE * usual < most else most) or 1.0
+
+
 def draw_field(axes: Axes, kind: FieldKind, window: Window, look: Look, high: float | None = None) -> AxesImage:
-    """Draw a field of the window's time smoothly; its colours reach to `high`, its largest value when left out."""
+    """Draw a field of the window's time smoothly; its colours reach to `high`, as `reach` says when left out."""
     values = kind.values(window)
-    high = high or np.max(np.abs(values)) or 1.0
+    high = high or reach(values)
     low, cmap = (-high, kind.cmap) if kind.signed else (0.0, look.cmap or kind.cmap)
     places = dict(extent=window.extent, origin="lower", aspect="equal", interpolation="bilinear")
     image = axes.imshow(values, cmap=cmap, vmin=low, vmax=high, **places)
+    if np.max(np.abs(values)) > high:  # arrows at the ends of its colour bar
+        image.cmap.colorbar_extend = "both" if kind.signed else "max"
     unit = "(length from the vesicle)"
     names = [f"${c}$ {unit if window.origin[d] else '(length)'}" for d, c in enumerate("xy")]
     axes.set(xlabel=names[0], ylabel=names[1], xlim=window.limits[:2], ylim=window.limits[2:])
@@ -89,6 +99,8 @@ def draw_membranes(
             segments.append(np.stack([points[:-1], points[1:]], axis=1))
             tensions.append(run.curve_tension(frame, vesicle) if smooth else run.edge_tension(frame, vesicle))
     if run.vesicles:
+        points = 72 / axes.figure.dpi * axes.get_window_extent().width / (window.limits[1] - window.limits[0])
+        wide = np.clip(points * np.min(run.each("area")[0] / run.each("length")[0]) / 2, LEAST, wide)
         style = dict(zorder=OVER_FIELD + 0.8, rasterized=not smooth)
         drawn.append(axes.add_collection(LineCollection(below, colors=color, lw=wide, joinstyle="round", **style)))
         lines = LineCollection(np.concatenate(segments), cmap="plasma", lw=0.6 * wide, capstyle="round", **style)

@@ -11,7 +11,7 @@ import numpy as np
 from petves.files import writing
 from petves.progress import progress_bar
 from petves.run import Run, RunError
-from petves.views.field import FIELDS, TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines
+from petves.views.field import FIELDS, TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines, reach
 from petves.views.figures import PLAIN, Look, add_bar
 from petves.views.window import Window
 
@@ -94,7 +94,7 @@ def _film(
 
     kind = FIELDS[field]
     windows = [Window(run, frame, look.follow) for frame in frames]
-    highest = max(float(np.max(np.abs(kind.values(window)))) for window in windows) or 1.0
+    highest = max(reach(kind.values(window)) for window in windows)
     limits = (run.tension[frames].min(), run.tension[frames].max()) if run.vesicles else (0.0, 1.0)
     sheet = box_sheet(windows[0], replace(look, width=width / DOTS), panels=1, last=run.vesicles > 0)
     (panel,), figure = sheet.panels, sheet.figure

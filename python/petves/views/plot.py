@@ -44,7 +44,7 @@ def plot_run(
     look : Look
         Format, size, colours, and whether fields and outlines go along with a vesicle.
     time : float, optional
-        Draw what is of one time, field and tension or what is asked for below, at the saved time nearest to it.
+        Draw what is of one time, field and tension or the fields, line and walls asked for, at the saved time nearest to it.
     columns : sequence of str
         Draw these columns of series.csv over time.
     fields : sequence of str
@@ -81,7 +81,7 @@ def plot_run(
         drawn.append(plot_line(run, line, frame, look, f"line{tail}"))
     if walls:
         drawn.append(plot_walls(run, frame, look, f"walls{tail}"))
-    if fields or (time is not None and not drawn):
+    if fields or (time is not None and line is None and not walls):
         drawn.append(plot_field(run, frame, look, fields or ("pressure", "speed"), f"field{tail}"))
         if run.vesicles and not fields:
             drawn.append(plot_tension(run, frame, look, f"tension{tail}"))

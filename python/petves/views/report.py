@@ -15,6 +15,7 @@ import numpy as np
 
 from petves.files import read_file, shown, writing
 from petves.run import Run
+from petves.views.field import reach
 from petves.views.figures import MANY, filled
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.views.window import Window
@@ -56,7 +57,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "TITLE": escape(f"petves: {shown(run.folder.resolve().name)}"),
         "WORDS": words,
         "NUMBERS": rows,
-        "NOTE": f"{membranes}The colours of the fluid span the range of each time.",
+        "NOTE": f"{membranes}The colours of the fluid span the range of each time, without few cells that have much more.",
         "PLOTS": _plots(run),
         "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in run.options().items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
@@ -134,9 +135,8 @@ def _bytes(values: np.ndarray) -> str:
 
 
 def _field(values: np.ndarray, signed: bool, colours: str, label: str) -> dict[str, Any]:
-    """Return a field of all frames in eight bits, each frame over its own range, from minus to plus if `signed`."""
-    high = np.abs(values).max(axis=(1, 2))
-    high[high == 0] = 1.0
+    """Return a field of all frames in eight bits, each frame over its `reach`, from minus to plus if `signed`."""
+    high = np.array([reach(frame) for frame in values])
     low = -high if signed else 0 * high
     share = (values - low[:, None, None]) / (high - low)[:, None, None]
     shape = [int(n) for n in values.shape[1:]]
