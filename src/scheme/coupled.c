@@ -44,21 +44,25 @@ static PetscReal RelativeSpeed(PetscInt n, const PetscScalar U[]) {
   return largest;
 }
 
-/* What the attempt in next shows: error, speed and edge ratio, the largest of all vesicles. */
+/* What the attempt in next shows: error, speed and edge ratio, the largest of all vesicles; of a membrane that
+   stretches the edge ratio over that before the step. */
 static PetscErrorCode Look(Scheme s, Coupled *d, StepTrial *trial) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
-  const PetscScalar *X, *P;
+  const PetscScalar *X, *P, *from;
   PetscReal found[2] = {0, 1};
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(d->next.X, &X));
   PetscCall(VecGetArrayRead(d->P, &P));
+  PetscCall(VecGetArrayRead(s->state.X, &from));
   for (PetscInt v = l->own; v < l->end; v++) {
-    Measures measures;
+    Measures measures, before = {.edge_ratio = 1};
+    if (MembraneStretches(m, v)) MembraneMeasure(m, v, from + 2 * LayoutOffset(l, v), &before);
     MembraneMeasure(m, v, X + 2 * LayoutOffset(l, v), &measures);
     found[0] = PetscMax(found[0], RelativeSpeed(LayoutCount(l, v), P + 2 * LayoutOffset(l, v)));
-    found[1] = PetscMax(found[1], measures.edge_ratio);
+    found[1] = PetscMax(found[1], measures.edge_ratio / before.edge_ratio);
   }
+  PetscCall(VecRestoreArrayRead(s->state.X, &from));
   PetscCall(VecRestoreArrayRead(d->P, &P));
   PetscCall(VecRestoreArrayRead(d->next.X, &X));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, l->comm));

@@ -19,7 +19,7 @@ typedef struct {
   PetscReal dt;
   PetscReal error; /* max |X - X*|/R0, of this order in dt */
   PetscReal speed; /* largest speed of a marker relative to its vesicle's mean velocity (length/time) */
-  PetscReal ratio; /* largest edge ratio of a vesicle */
+  PetscReal ratio; /* largest edge ratio of a vesicle; of one that stretches, its factor in the step */
   PetscReal loss;  /* largest loss of a film over the allowed loss; above 1: too much, or membranes cross */
 } StepTrial;
 

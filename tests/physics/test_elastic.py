@@ -62,6 +62,14 @@ def test_transient_is_of_the_order_of_the_scheme(tmp_path):
     assert errors[3, 20] < 2e-6 and errors[3, 80] < 1e-7
 
 
+def test_adaptive_steps_of_a_capsule_with_uneven_edges(tmp_path):
+    """Ca = 2/3: edges differ by 3 and steps go on, to the deformation of fixed steps."""
+    strong = f"{CIRCLE} {stretched('hooke', 1.5)} -time_end 8"
+    run = run_petves(tmp_path / "adapt", f"{strong} -time_adapt error -time_adapt_tol 1e-4")
+    assert run.series["edge_ratio"].max() > 3
+    assert deformed(run) == pytest.approx(deformed(run_petves(tmp_path / "fixed", strong)), abs=5e-6)
+
+
 def test_small_capillary_number(tmp_path):
     """Ca = 1e-4, steps of 100 times its own time: D sqrt((3 D^2/(8 Ca))^2 + 1) = 1/2, the limit without bending."""
     run = run_petves(tmp_path, f"{CIRCLE} {stretched('hooke', 1e4)} -time_step 0.1 -time_end 60")
