@@ -88,7 +88,7 @@ class Options(TypedDict, total=False):
     membrane_viscosity: Value  # of membranes that stretch: tension over the rate of the stretch (length^3/time)
     membrane_permeability: Value  # coupled: water passes the membranes at this times its pressure inside less that outside; 0: none (time/length)
     membrane_osmotic: Value  # of permeable membranes: osmotic pressures inside, at the first area, and outside; the higher one draws water (length^2/time^2)
-    membrane_memory: Literal['true', 'false'] | None  # coupled: shape memory, bending prefers the curvature that each part of the membrane has at rest (-membrane_rest); false: no curvature
+    membrane_memory: Value  # coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature
     membrane_rest: Value  # of membranes that stretch or remember: the shape at rest, the initial one, a circle of its length, or the curve of a file (initial|circle|FILE); its first point is that of the initial curve
     scheme_startup: Literal['euler', 'graded'] | None  # first step of orders 2 and 3: backward Euler, or five growing parts of a step
     time_step: Value  # dt (time)

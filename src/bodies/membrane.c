@@ -11,14 +11,14 @@ static PetscReal ArcLength(Membrane m, PetscInt v, const PetscScalar X[]) {
   return length;
 }
 
-/* Curvature of one vesicle's curve of equal edges at its markers. */
-static void MembraneCurvature(Membrane m, PetscInt v, const PetscScalar X[], PetscReal kappa[]) {
+/* `part` of the curvature of one vesicle's curve of equal edges at its markers. */
+static void MembraneCurvature(Membrane m, PetscInt v, PetscReal part, const PetscScalar X[], PetscReal kappa[]) {
   const PetscInt n = LayoutCount(m->layout, v);
   PetscScalar *slope = m->work.memory, *second = slope + 2 * n;
   (void)PetscArrayzero(slope, 4 * n);
   SpectralDerivative(m->spectral[v], 1, n / m->arc[v], X, slope);
   SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, second);
-  for (PetscInt k = 0; k < 2 * n; k += 2) kappa[k / 2] = slope[k] * second[k + 1] - slope[k + 1] * second[k];
+  for (PetscInt k = 0; k < 2 * n; k += 2) kappa[k / 2] = part * (slope[k] * second[k + 1] - slope[k + 1] * second[k]);
 }
 
 PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given, Membrane *out) {
@@ -44,7 +44,8 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
                          2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
   PetscCall(PetscMalloc1(4 * layout->M, &w->memory));
-  if (given->memory) PetscCall(PetscMalloc1(layout->M, &m->memory));
+  for (PetscInt v = 0; v < vesicles && !m->memory; v++)
+    if (given->remembered[v] > 0) PetscCall(PetscMalloc1(layout->M, &m->memory));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
     const PetscReal *rest = (given->rest_X ? given->rest_X : X) + 2 * layout->start[v];
@@ -57,7 +58,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
     m->L0[v] = measures.length;
     m->ds[v] = measures.length / n;
     m->modulus[v] = given->modulus[v];
-    if (m->memory) MembraneCurvature(m, v, rest, m->memory + layout->start[v]);
+    if (m->memory) MembraneCurvature(m, v, given->remembered[v], rest, m->memory + layout->start[v]);
     m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -177,8 +177,9 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
   const SceneMembrane *m = &s->membrane;
   const ScenePotential *p = &s->potential;
   const PetscBool paper = strcmp(s->scheme.type, "coupled"), stretches = m->law != LAW_INEXTENSIBLE;
-  PetscReal modulus = 0;
+  PetscReal modulus = 0, memory = 0;
   for (PetscInt k = 0; k < m->stretching.n; k++) modulus = PetscMax(modulus, m->stretching.v[k]);
+  for (PetscInt k = 0; k < m->memory.n; k++) memory = PetscMax(memory, m->memory.v[k]);
   const SceneRule rules[] = {
     {!stretches && modulus > 0,
      "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
@@ -198,10 +199,10 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
      "-membrane_permeability {-membrane_permeability}: needs -scheme_type coupled and one viscosity; allowed: 0, or these"},
     {stretches && paper,
      "-membrane_law {-membrane_law}: not with -scheme_type {-scheme_type}, whose membranes keep their length; allowed: inextensible, or -scheme_type coupled"},
-    {m->memory && (paper || m->derivative == DERIVATIVE_FD),
-     "-membrane_memory true: needs -scheme_type coupled and curvatures by -membrane_derivative spectral or bending; allowed: false, or these"},
-    {!stretches && !m->memory && strcmp(m->rest, "initial"),
-     "-membrane_rest {-membrane_rest}: this membrane neither stretches nor remembers; allowed: initial, or with a -membrane_law that stretches or -membrane_memory true"},
+    {memory > 0 && (paper || m->derivative == DERIVATIVE_FD),
+     "-membrane_memory {-membrane_memory}: needs -scheme_type coupled and curvatures by -membrane_derivative spectral or bending; allowed: 0, or these"},
+    {!stretches && memory == 0 && strcmp(m->rest, "initial"),
+     "-membrane_rest {-membrane_rest}: this membrane neither stretches nor remembers; allowed: initial, or with a -membrane_law that stretches or -membrane_memory 1"},
     {p->strength > 0 && p->distance == 0,
      "-contact_potential {-contact_potential}: no distance at which it is least; allowed: with -contact_potential_distance above 0"},
     {p->exponents.n != 2 || p->exponents.v[0] <= p->exponents.v[1],

@@ -44,17 +44,18 @@ typedef struct {
 } SceneVesicles;
 
 typedef struct {
-  RealList stiffness;            /* c_b; one entry for all, or one a vesicle or kind */
-  PetscReal bending;             /* the largest c_b */
-  PetscReal *each;               /* [vesicles] c_b */
-  RealList viscosity_ratio;      /* inside over outside; one for all, or one a vesicle or kind */
-  RealList stretching;           /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
-  PetscReal *modulus;            /* [vesicles] E_s */
-  PetscReal viscosity;           /* of membranes that stretch */
-  PetscReal permeability;        /* for water; 0: none */
-  RealList osmotic;              /* osmotic pressures inside and outside */
-  PetscInt law, moment;          /* LawType and MomentType of all membranes that stretch */
-  PetscBool memory;              /* bending prefers the rest shape's curvature */
+  RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
+  PetscReal bending;        /* the largest c_b */
+  PetscReal *each;          /* [vesicles] c_b */
+  RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
+  RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
+  PetscReal *modulus;       /* [vesicles] E_s */
+  PetscReal viscosity;      /* of membranes that stretch */
+  PetscReal permeability;   /* for water; 0: none */
+  RealList osmotic;         /* osmotic pressures inside and outside */
+  PetscInt law, moment;     /* LawType and MomentType of all membranes that stretch */
+  RealList memory;       /* part of the curvature at rest that bending prefers; one for all, or one a vesicle or kind */
+  PetscReal *remembered; /* [vesicles] memory */
   char rest[PETSC_MAX_PATH_LEN]; /* initial, circle, or a curve file */
   PetscReal *rest_X;             /* [2 shape.start[vesicles]] markers of the rest shapes, anywhere; NULL: initial */
   PetscInt derivative;           /* DerivativeType */

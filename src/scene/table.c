@@ -190,7 +190,7 @@ static const OptionRow table[] = {
   {"-membrane_viscosity", OPT_REAL, AT(membrane.viscosity), "0", ">=0", "of membranes that stretch: tension over the rate of the stretch (length^3/time)", &need_vesicles},
   {"-membrane_permeability", OPT_REAL, AT(membrane.permeability), "0", ">=0", "coupled: water passes the membranes at this times its pressure inside less that outside; 0: none (time/length)", &need_vesicles},
   {"-membrane_osmotic", OPT_REALS, AT(membrane.osmotic), "0,0", ">=0", "of permeable membranes: osmotic pressures inside, at the first area, and outside; the higher one draws water (length^2/time^2)", &need_vesicles},
-  {"-membrane_memory", OPT_BOOL, AT(membrane.memory), "false", "true|false", "coupled: shape memory, bending prefers the curvature that each part of the membrane has at rest (-membrane_rest); false: no curvature", &need_vesicles},
+  {"-membrane_memory", OPT_REALS, AT(membrane.memory), "0", ">=0", "coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature", &need_vesicles},
   {"-membrane_rest", OPT_PATH, AT(membrane.rest), "initial", "", "of membranes that stretch or remember: the shape at rest, the initial one, a circle of its length, or the curve of a file (initial|circle|FILE); its first point is that of the initial curve", &need_vesicles},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},

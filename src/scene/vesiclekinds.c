@@ -127,7 +127,7 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
 }
 
 /* Set what defines an ellipse or a biconcave outline, of vesicle v. */
-static void KindGive(Scene scene, PetscInt v, PetscReal given[4]) {
+static void KindGive(Scene scene, PetscInt v, PetscReal given[5]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool by_area = SceneByArea(scene);
   const PetscInt k = SceneKindOf(scene, v);
@@ -135,6 +135,7 @@ static void KindGive(Scene scene, PetscInt v, PetscReal given[4]) {
   given[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
   given[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
   given[3] = ListEntry(&scene->membrane.stretching, 1, k, 0);
+  given[4] = ListEntry(&scene->membrane.memory, 1, k, 0);
 }
 
 static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
@@ -157,6 +158,7 @@ static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
       PetscCall(PetscArraycpy(next->curve.axes, given, 2));
     next->bending = given[2];
     next->stretching = given[3];
+    next->memory = given[4];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,10 +183,12 @@ static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
       SceneCheckList(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1, all->vesicles, "curves", "a curve"));
   PetscCall(SceneCheckList(scene, "-membrane_stretching", scene->membrane.stretching.n, 1, all->vesicles, "curves",
                            "a curve"));
+  PetscCall(SceneCheckList(scene, "-membrane_memory", scene->membrane.memory.n, 1, all->vesicles, "curves", "a curve"));
   for (PetscInt k = 0; k < all->kinds; k++) {
     all->of[k] = k;
     all->kind[k].bending = ListEntry(&scene->membrane.stiffness, 1, k, 0);
     all->kind[k].stretching = ListEntry(&scene->membrane.stretching, 1, k, 0);
+    all->kind[k].memory = ListEntry(&scene->membrane.memory, 1, k, 0);
     if (ListEntry(&own->angle, 1, k, 0) != 0) CurveCentroid(&all->kind[k].curve, all->kind[k].pivot);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

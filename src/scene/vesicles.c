@@ -142,6 +142,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
   PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.modulus));
+  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.remembered));
   PetscCall(ScenePlace(scene, &kinds, pose));
   for (PetscInt v = 0; v < kinds.vesicles; v++)
     PetscCall(VesicleCheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
@@ -154,6 +155,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
     if (kind->rest) PetscCall(PetscArraycpy(scene->membrane.rest_X + 2 * shape->start[v], kind->rest, 2 * kind->M));
     scene->membrane.each[v] = kind->bending;
     scene->membrane.modulus[v] = kind->stretching;
+    scene->membrane.remembered[v] = kind->memory;
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
@@ -168,5 +170,6 @@ PetscErrorCode SceneDropShape(Draft scene) {
   PetscCall(PetscFree(scene->membrane.rest_X));
   PetscCall(PetscFree(scene->membrane.each));
   PetscCall(PetscFree(scene->membrane.modulus));
+  PetscCall(PetscFree(scene->membrane.remembered));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

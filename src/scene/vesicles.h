@@ -7,8 +7,9 @@
 typedef struct {
   Curve curve;        /* about the origin, or where its file has it */
   PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
-  PetscReal given[4]; /* area and reduced area, or both semi-axes; bending stiffness, E_s: not of a file's curve */
-  PetscReal length, area, bending, stretching;
+  PetscReal
+      given[5]; /* area and reduced area, or both semi-axes; bending stiffness, E_s, memory: not of a file's curve */
+  PetscReal length, area, bending, stretching, memory;
   PetscInt M;      /* markers, 0 before KindFit */
   PetscReal *X;    /* [2M] */
   PetscReal *rest; /* [2M] of the shape at rest; NULL: X */

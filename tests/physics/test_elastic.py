@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from boundary_integral import capsule
 from harness import REFERENCES, run_petves
 from restarts import agree
 
@@ -15,7 +16,7 @@ CIRCLE = f"{FREE} -flow_type shear -vesicle_semi_axes 1,1 -vesicle_bending 0 -ti
 ELLIPSE = f"{FREE} -vesicle_area {0.7 * math.pi!r} -vesicle_reduced_area 0.7 -vesicle_bending 0.1"
 FINE = "-vesicle_markers 65 -domain_cells 64,64 -time_step 0.025"
 TWO = "-domain_box -3,3,-3,3 -domain_cells 32,32 -flow_type shear -vesicle_count 2 -vesicle_center -1.2,.3,1.2,-.3"
-TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -membrane_viscosity .5 -membrane_memory true -time_step .05"
+TWO += " -vesicle_area 1 -vesicle_reduced_area .9 -vesicle_viscosity_ratio 3,.5 -membrane_law green -membrane_viscosity .5 -membrane_memory 1 -time_step .05"
 CASES = [(law, Ca) for law in ("hooke", "green", "neo_hookean") for Ca in CAPSULES[law]]
 
 
@@ -60,6 +61,22 @@ def test_transient_is_of_the_order_of_the_scheme(tmp_path):
         errors[order, steps] = abs(deformed(run_petves(tmp_path / f"{order}.{steps}", options)) - fine)
     assert errors[2, 20] > 3.8 * errors[2, 40]
     assert errors[3, 20] < 2e-6 and errors[3, 80] < 1e-7
+
+
+TENSIONS = {
+    "hooke": lambda stretch: stretch - 1,
+    "green": lambda stretch: (stretch**3 - stretch) / 2,
+    "neo_hookean": lambda stretch: (stretch**1.5 - stretch**-1.5) / 3,
+}
+
+
+@pytest.mark.parametrize("law", TENSIONS)
+def test_markers_are_those_of_an_explicit_code(tmp_path, law):
+    """Every marker after a strain of 1.5, Ca = .1, of another method in all: explicit steps, forces from tensions."""
+    run = run_petves(tmp_path, f"{CIRCLE} {stretched(law, 10.0)} -time_step 0.0125 -time_end 1.5 -output_every 1.5")
+    first, last = run.saved("vesicle/markers", "run.h5")
+    exact = capsule(first, lambda stretch: 10 * TENSIONS[law](stretch), 1.0, 0.01, 1.5)
+    assert np.abs(last - exact).max() < 2e-6 and np.abs(last - first).max() > 0.5
 
 
 def test_adaptive_steps_of_a_capsule_with_uneven_edges(tmp_path):
@@ -140,9 +157,7 @@ def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
 def test_bending_of_stretched_capsules(tmp_path, moment):
     """Ca = .1: D, angle, frequency and length of two boundary integrals, with kappa0 = 1 and without; quadratic bending is another material."""
     bending, memory, *targets = CAPSULES["moments"][moment]
-    options = (
-        f"-vesicle_bending {bending} -membrane_memory {str(memory).lower()} -membrane_moment {moment} -time_end 24"
-    )
+    options = f"-vesicle_bending {bending} -membrane_memory {int(memory)} -membrane_moment {moment} -time_end 24"
     run = run_petves(tmp_path, f"{CIRCLE} {stretched('hooke', 10.0)} {options}")
     found = [deformed(run), angle(run), run.series["frequency"][-1] / (2 * math.pi)]
     assert found == pytest.approx(targets, abs=3e-6)
@@ -167,7 +182,7 @@ def test_shape_at_rest_of_a_file(tmp_path):
     run = run_petves(tmp_path / "small", f"{small} -time_step 0.1 -time_end 1")
     assert run.saved("vesicle/tension", "run.h5") == pytest.approx(np.full((2, 45), 2.5), abs=1e-6)
     assert run.series["energy_stretching"] == pytest.approx(np.full(11, 0.5 * math.pi), rel=1e-7)
-    one = f"{FREE} -vesicle_semi_axes 1.25,.8 -vesicle_bending 0.1 -membrane_memory true -membrane_rest {tmp_path}/one.txt"
+    one = f"{FREE} -vesicle_semi_axes 1.25,.8 -vesicle_bending 0.1 -membrane_memory 1 -membrane_rest {tmp_path}/one.txt"
     for modulus, step in ((1.0, 1.0), (100.0, 1.0), (1e4, 1.0), (100.0, 100.0)):
         options = f"{one} {stretched('hooke', modulus)} -time_step {step} -time_end {40 * step}"
         series = run_petves(tmp_path / f"{modulus}.{step}", options).series
@@ -179,7 +194,7 @@ def test_shape_at_rest_of_a_file(tmp_path):
 @pytest.mark.parametrize("step", [0.02, 1, 100])
 def test_memory_keeps_the_shape(tmp_path, step):
     """An ellipse that remembers its curvature stays, by steps of any size, to what its markers resolve; no step gains energy."""
-    options = f"{ELLIPSE} -membrane_memory true -time_step {step} -time_end {20 * step}"
+    options = f"{ELLIPSE} -membrane_memory 1 -time_step {step} -time_end {20 * step}"
     run = run_petves(tmp_path, options)
     assert deformed(run) == pytest.approx(0.46881, abs=5e-5)
     assert np.diff(run.series["energy_bending"]).max() < 1e-9
@@ -190,7 +205,7 @@ def test_memory_turns_a_shape_to_its_rest(tmp_path):
     round_ = 2 * math.pi * (np.arange(200) / 200 + 1 / 3)
     np.savetxt(tmp_path / "rest.txt", np.c_[np.cos(round_), 0.4 * np.sin(round_)])
     ellipse = (
-        f"{FREE} -vesicle_semi_axes 1,.4 -vesicle_bending 0.1 -membrane_memory true -membrane_rest {tmp_path}/rest.txt"
+        f"{FREE} -vesicle_semi_axes 1,.4 -vesicle_bending 0.1 -membrane_memory 1 -membrane_rest {tmp_path}/rest.txt"
     )
     for step in (0.02, 1):
         series = run_petves(tmp_path / str(step), f"{ellipse} -time_step {step} -time_end 60").series
@@ -200,7 +215,7 @@ def test_memory_turns_a_shape_to_its_rest(tmp_path):
 
 def test_memory_swings_and_tumbles(tmp_path):
     """V = .7 in shear: angles over pi between which it swings, of a dense prototype in unbounded fluid; c_b = 1 tumbles."""
-    scene = f"{ELLIPSE} -flow_type shear -membrane_memory true -time_step 0.05"
+    scene = f"{ELLIPSE} -flow_type shear -membrane_memory 1 -time_step 0.05"
     for bending, between in (("0.1", (0.104, 0.139)), ("0.3", (0.050, 0.166))):
         run = run_petves(tmp_path / bending, f"{scene} -vesicle_bending {bending} -time_end 40")
         angles = run.series["inclination"][400:] / math.pi
@@ -258,8 +273,8 @@ def test_two_permeable_vesicles(tmp_path):
 
 
 def test_ranks_restart_and_mixtures(tmp_path):
-    """Two vesicles, one that stretches and one that does not, with contrast."""
+    """Two vesicles, one that stretches and one that does not, with contrast and memories of their own."""
     names = ("center_x_1", "inclination_2", "length_1", "energy_stretching", "coupled_its")
-    found = agree(tmp_path, f"{TWO} -membrane_stretching 2,0", 0.2, 0.4, names)
+    found = agree(tmp_path, f"{TWO} -membrane_stretching 2,0 -membrane_memory 1,.5", 0.2, 0.4, names)
     errors = [abs(found["whole"].series[f"length_error_{v}"]).max() for v in (1, 2)]
     assert errors[0] > 1e-3 and errors[1] < 1e-7

@@ -51,7 +51,7 @@ LONG = SHORT | {
         "-obstacle_velocity 1,0",
         0,
     ),
-    "membranes": (f"{TWO_STEPS} {STRETCHING} -membrane_memory true -tracer_grid 2,2", 0),
+    "membranes": (f"{TWO_STEPS} {STRETCHING} -membrane_memory 1 -tracer_grid 2,2", 0),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -time_end 0.03", 0),
 }

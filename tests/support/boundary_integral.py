@@ -1,4 +1,5 @@
-"""Boundary integrals in a box that is periodic both ways, dense: a vesicle and a solid held in a stream, viscosity 1."""
+"""Dense boundary integrals, viscosity 1: a vesicle and a solid held in a stream in a box that is periodic both ways, and
+a capsule in unbounded fluid by explicit steps."""
 
 import numpy as np
 
@@ -143,3 +144,28 @@ def pressed(vesicle, solid, period, stream, times):
     x = np.linalg.solve(A, -np.concatenate([stretch @ ambient[: 2 * m], ambient[2 * m :]]))
     velocity = (flow @ x + ambient)[: 2 * m].reshape(m, 2)
     return velocity[::times], -x[m:].reshape(w, 2).sum(0)
+
+
+def capsule(circle, tension, rate, step, end):
+    """A capsule that is a circle without tension at first, (n, 2), n odd, in unbounded shear (rate y, 0), viscosity 1, by
+    the explicit Runge-Kutta method of order 4 up to the time `end`. tension: of the stretch. Returns the points."""
+    n = len(circle)
+    D = derivative(n)
+    rest = np.linalg.norm(D @ circle, axis=1)
+
+    def velocity(X):
+        T = D @ X
+        speed = np.linalg.norm(T, axis=1)
+        force = D @ (T * (tension(speed / rest) / speed)[:, None])
+        d = X[:, None] - X
+        r2 = (d**2).sum(-1)[..., None, None]
+        plain = np.where(r2 > 0, r2, 1)
+        S = -0.5 * np.log(plain) * np.eye(2) + d[..., :, None] * d[..., None, :] / plain + own_part(X)
+        return np.einsum("ijcd,jd->ic", S, force) / (4 * np.pi) + rate * X[:, 1:] * [1, 0]
+
+    for _ in range(round(end / step)):
+        a = velocity(circle)
+        b = velocity(circle + step / 2 * a)
+        c = velocity(circle + step / 2 * b)
+        circle = circle + step / 6 * (a + 2 * b + 2 * c + velocity(circle + step * c))
+    return circle

@@ -257,7 +257,7 @@ static PetscErrorCode CheckOperators(void) {
   PetscCall(
       TestMembraneCreate("-domain_box -8,8,-8,8 -domain_cells 800,800 -vesicle_semi_axes 0.6,0.25 -vesicle_angle 17 "
                          "-vesicle_markers 63 -vesicle_bending 0.3 -vesicle_allow_close_markers "
-                         "-membrane_memory true -scheme_type coupled -membrane_derivative spectral",
+                         "-membrane_memory 1 -scheme_type coupled -membrane_derivative spectral",
                          &m));
   PetscCall(CheckBending(&m, &state));
   const PetscReal rest = MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X);
