@@ -30,7 +30,7 @@ class Options(TypedDict, total=False):
     flow_drive: Literal['pressure', 'flux'] | None  # channel, periodic in x: which quantity vesicles and obstacles do not change, the mean pressure gradient or the flux
     fluid_viscosity: Value  # nu (length^2/time; density is 1)
     fluid_inertia: Literal['auto', 'none', 'unsteady', 'convective'] | None  # inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number
-    fluid_gravity: Value  # gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference
+    fluid_gravity: Value  # gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference, free obstacles by -obstacle_density
     vesicle_shape: Literal['ellipse', 'biconcave', 'file', 'none'] | None  # initial shape; biconcave: the red cell's outline
     vesicle_count: Value  # number of vesicles; a file has its own number of curves, a packing the number that it takes
     vesicle_semi_axes: Value  # semi-axes of the ellipse, two for all, or two a vesicle or kind (length)
@@ -61,6 +61,10 @@ class Options(TypedDict, total=False):
     obstacle_rotation: Value  # rate at which the surfaces turn about their curves' middles, counter-clockwise, one for all or one each (1/time)
     obstacle_frequency: Value  # the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)
     obstacle_moving: Literal['true', 'false'] | None  # closed obstacles move and turn as solid bodies with the velocities given (of a file: its lines # velocity and # rotation); false: they rest, and only their surfaces move
+    obstacle_free: Value  # numbers of the closed obstacles, from 1 on, with commas between, that move and turn as the fluid carries them, or all
+    obstacle_density: Value  # density of free obstacles over that of the fluid, for their weight under -fluid_gravity; one for all or one an obstacle
+    obstacle_force: Value  # f_x,f_y from outside on free obstacles, over the fluid's density and a unit of depth; a pair for all or one an obstacle (length^3/time^2)
+    obstacle_torque: Value  # torque from outside on free obstacles about their centroids, counter-clockwise; one for all or one an obstacle (length^4/time^2)
     obstacle_file: Value  # curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own
     obstacle_spacing: Value  # spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it
     obstacle_factor: Literal['auto', 'dense', 'modes'] | None  # preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways

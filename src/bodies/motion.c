@@ -1,7 +1,22 @@
 #include "bodies/motion.h"
 
+PetscErrorCode InstantCopy(Instant from, Instant *copy) {
+  PetscFunctionBeginUser;
+  copy->t = from.t;
+  if (!from.place) PetscCall(VecDestroy(&copy->place));
+  if (from.place && !copy->place) PetscCall(VecDuplicate(from.place, &copy->place));
+  if (from.place) PetscCall(VecCopy(from.place, copy->place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 BodyPose MotionPose(const BodyMotion *m, Instant at) {
+  const PetscInt first = 3 * (m->free - 1), all[] = {first, first + 1, first + 2};
+  PetscReal y[3];
   const PetscReal t = at.t, s = m->frequency > 0 ? PetscSinReal(m->frequency * t) / m->frequency : t;
+  if (m->free && at.place) {
+    (void)VecGetValues(at.place, 3, all, y);
+    return (BodyPose){{y[0], y[1]}, y[2]};
+  }
   if (!m->carried) return (BodyPose){{m->center[0], m->center[1]}, 0};
   return (BodyPose){{m->center[0] + m->velocity[0] * s, m->center[1] + m->velocity[1] * s}, m->rotation * s};
 }

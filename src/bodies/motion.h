@@ -1,20 +1,28 @@
-/* How a solid body moves: not at all, or as it is told (-obstacle_moving). With the velocity U cos(ft) and the rotation
+/* How a solid body moves: not at all, as it is told (-obstacle_moving), or freely (-obstacle_free): then its place is
+   part of the state of a run (freebodies.h). Of the second kind: with the velocity U cos(ft) and the rotation
    w cos(ft) its center is at c + U s, and it has turned by w s, s = sin(ft)/f or, with f = 0, t. That is exact at any
    time, so there is nothing of it to integrate or to keep. */
 #pragma once
 #include "base/base.h"
 
 typedef struct {
-  PetscReal center[2];             /* c, about which it turns and torques are taken: the mean of its markers */
+  PetscReal center[2];             /* c, about which it turns and torques are taken: the mean of its markers, of a body
+                                      that moves freely the centroid of its area */
   PetscReal velocity[2], rotation; /* of its surface, at time 0 */
   PetscReal frequency;             /* f (1/time) */
+  PetscInt free;                   /* number, from 1, among the bodies that move freely; 0: it is none of them */
   PetscBool carried, turned;       /* its markers move; they turn, which those of a circle need not */
 } BodyMotion;
 
-/* A time, and where bodies are then that do not move as they are told. */
+/* A time, and where the bodies are then that move freely: center and angle of each, on every rank; NULL: where they
+   were at time 0. */
 typedef struct {
   PetscReal t;
+  Vec place;
 } Instant;
+
+/* InstantCopy - an instant with a place of its own, which VecDestroy frees. Not collective. */
+PETSC_EXTERN PetscErrorCode InstantCopy(Instant from, Instant *copy);
 
 /* Where a body is. */
 typedef struct {

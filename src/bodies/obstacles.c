@@ -41,6 +41,54 @@ static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The centroid and the area of a curve at rest. */
+static PetscErrorCode ObstacleCentroid(Obstacles o, PetscInt b, PetscReal center[2], PetscReal *area) {
+  const PetscInt n = LayoutCount(o->layout, b);
+  const PetscReal *X = o->rest + 2 * o->layout->start[b];
+  PetscReal *T, first[2] = {0, 0};
+  PetscFunctionBeginUser;
+  *area = 0;
+  PetscCall(PetscMalloc1(2 * n, &T));
+  PetscCall(CurveTangents(&o->kind[b], o->spectral[b], n, X, T));
+  for (PetscInt k = 0; k < 2 * n; k += 2) {
+    const PetscReal x[2] = {X[k] - X[0], X[k + 1] - X[1]}, sweep = x[0] * T[k + 1] - x[1] * T[k];
+    *area += sweep / 2;
+    for (int c = 0; c < 2; c++) first[c] += x[c] * sweep / 3;
+  }
+  for (int c = 0; c < 2; c++) center[c] = X[c] + first[c] / *area;
+  PetscCall(PetscFree(T));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Motions, layout and loads of the free bodies. */
+static PetscErrorCode ObstaclesFree(Obstacles o, Scene scene) {
+  const SceneFreeBodies *own = &scene->obstacles.free;
+  const Layout l = o->layout;
+  PetscInt *start, *body, count = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(own->count + 1, &start, l->size + 1, &body));
+  PetscCall(PetscMalloc1(3 * own->count, &o->load));
+  for (PetscInt k = 0; k <= own->count; k++) start[k] = k;
+  for (PetscMPIInt r = 0; r <= l->size; r++) body[r] = 0;
+  for (PetscInt b = 0; b < l->bodies; b++) {
+    if (!own->is[b]) continue;
+    BodyMotion *m = &o->motion[b];
+    PetscReal *load = o->load + 3 * count, area;
+    PetscCall(ObstacleCentroid(o, b, m->center, &area));
+    for (int c = 0; c < 2; c++)
+      load[c] = ListEntry(&own->force, 2, b, c) +
+                (ListEntry(&own->density, 1, b, 0) - 1) * area * scene->gravity.g.v[c];
+    load[2] = ListEntry(&own->torque, 1, b, 0);
+    m->free = ++count;
+    m->carried = o->moving = PETSC_TRUE;
+    m->turned = scene->obstacles.circles ? PETSC_FALSE : PETSC_TRUE;
+    for (PetscMPIInt r = 0; r <= l->size; r++) body[r] += b < l->body[r];
+  }
+  PetscCall(LayoutCreate(l->comm, own->count, start, body, &o->free));
+  PetscCall(PetscFree2(start, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscInt curves = own->outline.vesicles;
@@ -68,6 +116,7 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
     o->vesicle[b] = own->vesicle[b];
     o->ratio[b] = own->vesicle[b] < 0 ? 1 : SceneViscosityRatio(scene, own->vesicle[b]);
   }
+  PetscCall(ObstaclesFree(o, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,7 +129,7 @@ static void ObstacleCarry(Obstacles o, PetscInt b, Instant at, PetscReal X[]) {
 PetscErrorCode ObstaclesPlace(Obstacles o, Instant at) {
   PetscReal length;
   PetscFunctionBeginUser;
-  o->at = at;
+  PetscCall(InstantCopy(at, &o->at));
   for (PetscInt b = 0; b < o->layout->bodies; b++) {
     if (o->motion[b].carried) ObstacleCarry(o, b, at, o->X);
     if (o->motion[b].turned) PetscCall(Normals(o, b, &length));
@@ -95,6 +144,9 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   for (PetscInt b = 0; b < o->layout->bodies; b++) PetscCall(SpectralDestroy(&o->spectral[b]));
   PetscCall(PetscFree7(o->rest, o->X, o->N, o->motion, o->ds, o->spectral, o->container));
   PetscCall(PetscFree3(o->kind, o->vesicle, o->ratio));
+  PetscCall(VecDestroy(&o->at.place));
+  PetscCall(LayoutDestroy(&o->free));
+  PetscCall(PetscFree(o->load));
   PetscCall(LayoutDestroy(&o->layout));
   PetscCall(PetscFree(*obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -204,6 +256,15 @@ PetscErrorCode ObstaclesCheckStride(Obstacles o, Instant from, Instant to, char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscReal ObstaclesStride(Obstacles o, Instant from, Instant to) {
+  PetscReal half, reach, way = 0;
+  for (PetscInt b = 0; b < o->layout->bodies; b++) {
+    ObstacleExtent(o, b, &half, &reach);
+    way = PetscMax(way, MotionStride(&o->motion[b], from, to, reach));
+  }
+  return way;
+}
+
 void ObstaclesRows(Obstacles o, const PetscScalar F[], PetscScalar y[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++) {
@@ -223,8 +284,10 @@ void ObstaclesBlock(Obstacles o, PetscInt b, PetscReal alpha, PetscInt lda, Pets
 
 void ObstaclesTurn(Obstacles o, Instant from, Instant to, PetscScalar F[]) {
   const Layout l = o->layout;
-  for (PetscInt b = l->own; b < l->end; b++)
+  for (PetscInt b = l->own; b < l->end; b++) {
     MotionTurn(&o->motion[b], from, to, LayoutCount(l, b), F + 2 * LayoutOffset(l, b));
+    if (o->motion[b].free) MotionTurn(&o->motion[b], from, to, 1, F + FreeBodyAt(o, b));
+  }
 }
 
 void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScalar y[]) {
@@ -233,6 +296,10 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
     const PetscInt at = 2 * LayoutOffset(l, b);
     const PetscReal factor = inverse ? o->ds[b] / weight : weight / o->ds[b];
     for (PetscInt k = at; k < at + 2 * LayoutCount(l, b); k++) y[k] *= factor;
+    for (int c = 0; c < 3 && o->motion[b].free; c++) {
+      const PetscReal row = 1 / (o->ds[b] * (c < 2 ? 1 : ObstacleRadius(o, b)));
+      y[FreeBodyAt(o, b) + c] *= inverse ? 1 / row : row;
+    }
   }
 }
 

@@ -21,6 +21,8 @@ struct _p_Obstacles {
   PetscReal *X;         /* [2W] where they have been placed */
   Instant at;           /* at this time */
   BodyMotion *motion;   /* [curves] */
+  Layout free;          /* bodies that move freely, as one marker each (freebodies.h) */
+  PetscReal *load;      /* [3 free] force and torque on each of them from outside */
   PetscBool moving;     /* whether a curve moves */
   PetscReal *N;         /* [2W] unit vector of each curve's normals, dX/dk turned outwards, where placed */
   PetscReal *ds;        /* [curves] mean edge */
@@ -38,6 +40,19 @@ struct _p_Obstacles {
 PETSC_EXTERN PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *obstacles);
 PETSC_EXTERN PetscErrorCode ObstaclesDestroy(Obstacles *obstacles);
 
+/* FreeBodyAt - where a free body's three numbers stand in the arrays of unknowns, residuals and forces (freebodies.h);
+   FreeBodiesOwn - how many of them this rank has. ObstacleRadius - that of a circle of the curve's length. Not
+   collective. */
+static inline PetscInt FreeBodyAt(Obstacles o, PetscInt curve) {
+  return 2 * o->layout->n + 3 * (o->motion[curve].free - 1 - o->free->first);
+}
+static inline PetscInt FreeBodiesOwn(Obstacles o) {
+  return 3 * o->free->n;
+}
+static inline PetscReal ObstacleRadius(Obstacles o, PetscInt curve) {
+  return o->ds[curve] * LayoutCount(o->layout, curve) / (2 * PETSC_PI);
+}
+
 /* ObstaclesPlace - X and N at an instant. Not collective. */
 PETSC_EXTERN PetscErrorCode ObstaclesPlace(Obstacles obstacles, Instant at);
 
@@ -51,6 +66,9 @@ PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Scene scene, Ins
 PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, Instant from, Instant to,
                                                  char message[PETVES_MAX_MESSAGE]);
 
+/* ObstaclesStride - the farthest way of a marker from one instant to another (length). Not collective. */
+PETSC_EXTERN PetscReal ObstaclesStride(Obstacles obstacles, Instant from, Instant to);
+
 /* ObstaclesCurves - markers of all obstacles at an instant as others see them, X[2W]: clockwise the curves that have
    the fluid inside. ObstaclesOrder - other numbers of all markers in that order, seen[2W], which may be own. Not
    collective. */
@@ -59,12 +77,14 @@ PETSC_EXTERN void ObstaclesOrder(Obstacles obstacles, const PetscReal own[], Pet
 
 /* ObstaclesRows - y += beta N N^T F, what obstacles give their rows themselves, of own F[2w], y[2w]. ObstaclesBlock -
    A += alpha times that as a matrix, of one curve's markers, columns lda apart. ObstaclesTurn - own vectors at the
-   markers as the bodies stood at one instant, F[2w], become those at another. Not collective. */
+   markers as the bodies stood at one instant, F[2w], become those at another, with what stands
+   behind them of free bodies. Not collective. */
 PETSC_EXTERN void ObstaclesRows(Obstacles obstacles, const PetscScalar F[], PetscScalar y[]);
 PETSC_EXTERN void ObstaclesBlock(Obstacles obstacles, PetscInt curve, PetscReal alpha, PetscInt lda, PetscReal A[]);
 PETSC_EXTERN void ObstaclesTurn(Obstacles obstacles, Instant from, Instant to, PetscScalar F[]);
 
-/* ObstaclesScale - multiply the residuals y[2w] of the own rows by weight/ds, or (inverse) divide. Not collective. */
+/* ObstaclesScale - multiply the residuals y of the own rows by weight/ds, those of force and torque on
+   free bodies by 1/ds and 1/(ds radius), or (inverse) divide. Not collective. */
 PETSC_EXTERN void ObstaclesScale(Obstacles obstacles, PetscReal weight, PetscBool inverse, PetscScalar y[]);
 
 /* ObstaclesTarget - k += u_inf - U_w at the obstacles' markers where and when they have been placed, the last ones of

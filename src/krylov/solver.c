@@ -1,4 +1,5 @@
 #include "krylov/solver.h"
+#include "bodies/freebodies.h"
 
 #define MOST_ROUNDS 4
 
@@ -113,7 +114,7 @@ static PetscErrorCode FreeReference(CoupledSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of f, g and the obstacles' k with their factors (UnknownsScale). With a flow f is without the states
+/* Norm of f, g and the obstacles' k and loads with their factors (UnknownsScale). With a flow f is without the states
    before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Unknowns u = s->unknowns;
@@ -128,7 +129,8 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
     PetscCall(VecCopy(q->k, s->reduced->U));
     PetscCall(VecGetArray(s->reduced->U, &k));
     PetscCall(MobilityAddLayers(s->coupling->mobility, q->known.F, NULL, k));
-    PetscCall(PetscArraycpy(a + u->velocity, k + u->velocity, u->solid));
+    PetscCall(PetscArraycpy(a + u->velocity, k + u->velocity, BodiesObstacleNumbers(s->coupling->bodies)));
+    FreeBodiesLoads(s->coupling->bodies->obstacles, a + u->velocity);
     PetscCall(VecRestoreArray(s->reduced->U, &k));
   }
   UnknownsScale(u, PETSC_FALSE, a);

@@ -165,11 +165,10 @@ static PetscErrorCode DoubleSources(LayerCells *s, PetscInt v, PetscInt n) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All vesicles, but for those of ratio 1 where there are ratios: density[2n] forces, or velocities of the markers. */
-static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], Vec density, Vec X,
+/* All bodies of a layout, but for vesicles of ratio 1 where there are ratios: density[2n] forces, or velocities of the
+   markers. */
+static PetscErrorCode LayerCellsCorrect(LayerCells *s, Layout l, const PetscReal ratio[], Vec density, Vec X,
                                         PetscReal *const field[3]) {
-  const Membrane m = s->set->bodies->membrane;
-  const Layout l = m->layout;
   const Grid g = s->set->markers->grid;
   const CellLayer of = {s, s->summed, LayerCellsLattice, LayerCellsExact};
   const int sources = s->kernel->sources;
@@ -184,7 +183,8 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], 
     s->X = x + 2 * l->start[v];
     s->density = all + 2 * l->start[v];
     if (ratio && ratio[v] == 1) continue;
-    if (!CellRowBegin(g, LayoutCount(l, v), s->X, PetscMax(CELLS * g->h, SPACINGS * m->ds[v]), &row)) continue;
+    if (!CellRowBegin(g, LayoutCount(l, v), s->X, PetscMax(CELLS * g->h, SPACINGS * s->set->bodies->ds[v]), &row))
+      continue;
     s->ratio = ratio ? ratio[v] : 1;
     for (PetscInt k = 0; k < 2 * row.n && ratio; k++) s->density[k] *= 1 - ratio[v];
     PetscCall(s->find(s, v, row.n));
@@ -197,7 +197,7 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, const PetscReal ratio[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Vec F, Vec X,
+PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Layout layout, Vec F, Vec X,
                                   PetscReal *const field[3]) {
   const Grid g = set->markers->grid;
   const FarCell far = FarCoefficients(set->markers->kernel);
@@ -213,7 +213,7 @@ PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *la
                   .scale = {1 / set->nu, 1 / set->nu, 1 / g->h}};
   PetscFunctionBeginUser;
   if (!g->free) PetscCall(LatticePressure(SUMMED_SINGLE + OFFSET_LAGS, &pressure));
-  PetscCall(LayerCellsCorrect(&s, NULL, F, X, field));
+  PetscCall(LayerCellsCorrect(&s, layout, NULL, F, X, field));
   PetscCall(OffsetTableDestroy(&pressure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -237,7 +237,7 @@ PetscErrorCode DoubleCellsCorrect(const LayerSetting *set, const OffsetTable lat
   if (!g->free) PetscCall(DipolePressure(SUMMED_DOUBLE + OFFSET_LAGS, &pressure));
   PetscCall(PetscMalloc1(cells, &s.over));
   for (PetscInt k = 0; k < cells; k++) s.over[k] = 1;
-  PetscCall(LayerCellsCorrect(&s, ratio, U, X, field));
+  PetscCall(LayerCellsCorrect(&s, set->bodies->membrane->layout, ratio, U, X, field));
   for (int f = 0; f < 2; f++)
     for (PetscInt k = 0; k < cells && field[f]; k++) field[f][k] *= s.over[k];
   PetscCall(PetscFree(s.over));

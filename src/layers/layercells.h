@@ -9,11 +9,12 @@
 /* field[3][rows][nx]: u, v and p at this rank's cell centres, NULL for those not wanted; X: the membranes' markers.
    Collective.
 
-   SingleCellsCorrect - to the grid's answer to the forces times ds F[2n] on the markers; lattice: LatticeStokeslet.
+   SingleCellsCorrect - to the grid's answer to the forces times ds F[2n] on the markers X of the first bodies, those of
+   a layout; lattice: LatticeStokeslet.
 
    DoubleCellsCorrect - to the solved velocity, background included, u and v together or neither, of vesicles with these
    ratios of viscosities whose markers move with U; lattice: LatticeDipoles. */
-PETSC_EXTERN PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Vec F, Vec X,
-                                               PetscReal *const field[3]);
+PETSC_EXTERN PetscErrorCode SingleCellsCorrect(const LayerSetting *set, const OffsetTable *lattice, Layout layout,
+                                               Vec F, Vec X, PetscReal *const field[3]);
 PETSC_EXTERN PetscErrorCode DoubleCellsCorrect(const LayerSetting *set, const OffsetTable lattice[2],
                                                const PetscReal ratio[], Vec U, Vec X, PetscReal *const field[3]);

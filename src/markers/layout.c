@@ -36,7 +36,7 @@ PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const PetscInt start
   l->end = l->body[l->rank + 1];
   l->first = start[l->own];
   l->n = start[l->end] - l->first;
-  for (int each = 1; each <= 2; each++) {
+  for (int each = 1; each <= 3; each++) {
     PetscCall(PetscMalloc2(l->size, &l->count[each - 1], l->size, &l->at[each - 1]));
     for (PetscMPIInt r = 0; r < l->size; r++) {
       PetscCall(PetscMPIIntCast(each * (start[l->body[r + 1]] - start[l->body[r]]), &l->count[each - 1][r]));
@@ -62,7 +62,7 @@ PetscErrorCode LayoutDestroy(Layout *layout) {
   PetscFunctionBeginUser;
   if (!l) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree2(l->start, l->body));
-  for (int k = 0; k < 2; k++) PetscCall(PetscFree2(l->count[k], l->at[k]));
+  for (int k = 0; k < 3; k++) PetscCall(PetscFree2(l->count[k], l->at[k]));
   PetscCall(PetscFree(*layout));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,7 +16,7 @@ struct _p_Layout {
   PetscInt *body;                /* [ranks+1] first body of each rank */
   PetscInt own, end;             /* this rank's bodies: own .. end - 1 */
   PetscInt first, n;             /* this rank's markers: first .. first + n - 1 */
-  PetscMPIInt *count[2], *at[2]; /* [ranks] length and start of each rank's part, with one and two numbers a marker */
+  PetscMPIInt *count[3], *at[3]; /* [ranks] length and start of each rank's part, with one to three numbers a marker */
 };
 
 /* LayoutCreate - for bodies whose first markers are start[bodies+1]. body[ranks+1]: first body of each rank; NULL: by
@@ -29,7 +29,7 @@ PETSC_EXTERN PetscErrorCode LayoutCreate(MPI_Comm comm, PetscInt bodies, const P
 PETSC_EXTERN PetscErrorCode LayoutCreatePart(Layout all, PetscInt first, PetscInt end, Layout *layout);
 PETSC_EXTERN PetscErrorCode LayoutDestroy(Layout *layout);
 
-/* LayoutCreateVec - zero vector with `each` (1 or 2) numbers a marker. Collective. */
+/* LayoutCreateVec - zero vector with `each` (1 to 3) numbers a marker. Collective. */
 PETSC_EXTERN PetscErrorCode LayoutCreateVec(Layout layout, int each, Vec *x);
 
 /* LayoutOwner - the rank that a body belongs to. Not collective. */

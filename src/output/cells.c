@@ -48,6 +48,38 @@ static PetscErrorCode CellComponent(Scheme s, int c, const PetscScalar w[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CellForces(Scheme s, Layout *layout, Vec *F, Vec *X) {
+  const State *q = &s->state;
+  const Layout vesicles = s->membrane->layout;
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscScalar *solid;
+  PetscReal *all;
+  PetscScalar *f, *x;
+  Vec own;
+  PetscFunctionBeginUser;
+  *layout = o && s->fluid->grid->free ? s->coupling->bodies->layout : vesicles;
+  PetscCall(LayoutCreateVec(*layout, 2, F));
+  PetscCall(LayoutCreateVec(*layout, 2, X));
+  PetscCall(VecDuplicate(q->X, &own));
+  PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, own));
+  PetscCall(CouplingCopyVesicles(s->coupling, own, *F));
+  PetscCall(CouplingCopyVesicles(s->coupling, q->X, *X));
+  PetscCall(VecDestroy(&own));
+  if (*layout == vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(2 * o->layout->M, &all));
+  ObstaclesCurves(o, StateInstant(q), all);
+  PetscCall(VecGetArrayRead(q->solid, &solid));
+  PetscCall(VecGetArray(*F, &f));
+  PetscCall(VecGetArray(*X, &x));
+  PetscCall(PetscArraycpy(x + 2 * vesicles->n, all + 2 * o->layout->first, 2 * o->layout->n));
+  for (PetscInt k = 0; k < 2 * o->layout->n; k++) f[2 * vesicles->n + k] = -solid[k];
+  PetscCall(VecRestoreArray(*X, &x));
+  PetscCall(VecRestoreArray(*F, &f));
+  PetscCall(VecRestoreArrayRead(q->solid, &solid));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the grid does not have of the membranes' forces and jumps: all of it in unbounded fluid, the near field
    otherwise; then the velocity inside vesicles of another viscosity. Nothing before the first step, whose velocity and
    tension are not known. */
@@ -55,13 +87,14 @@ static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   const State *q = &s->state;
   const NearField near = s->coupling->mobility->near;
   const DoubleLayer contrast = s->coupling->mobility->contrast;
-  Vec F;
+  Layout layout;
+  Vec F, X;
   PetscFunctionBeginUser;
   if (!q->solved || !near) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(q->X, &F));
-  PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, F));
-  PetscCall(SingleCellsCorrect(&near->set, &near->lattice, F, q->X, field));
+  PetscCall(CellForces(s, &layout, &F, &X));
+  PetscCall(SingleCellsCorrect(&near->set, &near->lattice, layout, F, X, field));
   PetscCall(VecDestroy(&F));
+  PetscCall(VecDestroy(&X));
   if (contrast) PetscCall(DoubleCellsCorrect(&near->set, contrast->lattice, contrast->ratio, q->U, q->X, field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -53,7 +53,7 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   for (PetscInt v = 0; v < o->layout->bodies; v++) kind[v] = o->kind[v].type;
   H5Put(f, "obstacle_kind", H5_INT, o->layout->bodies, kind);
   H5Put(f, "obstacle_start", H5_INT, o->layout->bodies + 1, o->layout->start);
-  if (!scene->moving) H5PutRows(f, "/obstacle/markers", H5_REAL, o->layout->M, 2, X);
+  if (!SceneObstaclesMove(scene)) H5PutRows(f, "/obstacle/markers", H5_REAL, o->layout->M, 2, X);
   PetscCall(FramesPutLines(f, o->layout, o->kind, "/obstacle/lines", "/obstacle/number"));
   PetscCall(PetscFree2(X, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -98,8 +98,9 @@ PetscBool FramesAreWrapped(Scheme s) {
 PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt scheduled, const char restart[]) {
   const Grid g = s->fluid->grid;
   const Obstacles o = s->coupling->bodies->obstacles;
-  const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0, moving = s->scene->obstacles.moving ? W : 0,
-                 n = g->n[0] * g->rows[FIELD_P], tracers = f->tracers->n;
+  const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0,
+                 moving = SceneObstaclesMove(&s->scene->obstacles) ? W : 0, n = g->n[0] * g->rows[FIELD_P],
+                 tracers = f->tracers->n;
   const PetscBool single = s->scene->output.precision == PRECISION_SINGLE;
   const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single, "length/time"},
                                 {"/fluid/v", g->n[1], g->n[0], single, "length/time"},
@@ -155,7 +156,7 @@ static void FramesWrap(Scheme s, PetscBool solids, PetscReal X[]) {
 PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
   const Scheme s = f->scheme;
   const Obstacles o = s->coupling->bodies->obstacles;
-  const PetscBool wrapped = FramesAreWrapped(s), moving = s->scene->obstacles.moving;
+  const PetscBool wrapped = FramesAreWrapped(s), moving = SceneObstaclesMove(&s->scene->obstacles);
   AppendedFile *file = &f->file;
   PetscReal gradient;
   PetscInt k = 0;
@@ -166,7 +167,7 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
     PetscCall(GatherRows(s->fluid->grid, FIELD_P, s->fluid->grid->n[0], f->cells[k], f->all));
     AppendedSet(file, k, f->all);
   }
-  for (int name = 0; name < STATE_PARTS; name++) {
+  for (int name = 0; name <= STATE_SOLIDS; name++) {
     const StatePart part = StatePartOf(s, &s->state, (StatePartName)name);
     if (!part.n) continue;
     PetscCall(StateShow(s, (StatePartName)name, f->all));

@@ -6,15 +6,25 @@ StatePart StatePartOf(Scheme s, const State *q, StatePartName name) {
   const StatePart all[STATE_PARTS] = {{"vesicle/markers", 2, vesicles, q->X},
                                       {"vesicle/velocity", 2, vesicles, q->U},
                                       {"vesicle/tension", 1, vesicles, q->sigma},
-                                      {"obstacle/force", 2, o ? o->layout : NULL, q->solid}};
+                                      {"obstacle/force", 2, o ? o->layout : NULL, q->solid},
+                                      {"obstacle/rate", 3, o ? o->free : NULL, q->solid},
+                                      {"obstacle/place", 3, NULL, q->place}};
   StatePart part = all[name];
-  if (part.vector) part.n = part.layout->M;
+  if (part.vector) part.n = part.layout ? part.layout->M : o->free->M;
+  if (name == STATE_RATES && o) part.first = 2 * o->layout->n;
   return part;
 }
 
 PetscErrorCode StateGather(const StatePart *p, PetscReal values[]) {
+  const PetscScalar *own;
   PetscFunctionBeginUser;
-  if (p->n) PetscCall(LayoutGatherVec(p->layout, p->vector, values));
+  if (!p->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(p->vector, &own));
+  if (p->layout)
+    PetscCall(LayoutGather(p->layout, p->each, own + p->first, values));
+  else
+    PetscCall(PetscArraycpy(values, own, p->each * p->n));
+  PetscCall(VecRestoreArrayRead(p->vector, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,12 +44,11 @@ PetscErrorCode StateShow(Scheme s, StatePartName name, PetscReal values[]) {
 }
 
 PetscErrorCode StateScatter(const StatePart *p, const PetscReal values[]) {
-  PetscInt first, end;
+  const PetscInt first = p->layout ? p->layout->first : 0, n = p->layout ? p->layout->n : p->n;
   PetscScalar *own;
   PetscFunctionBeginUser;
-  PetscCall(VecGetOwnershipRange(p->vector, &first, &end));
   PetscCall(VecGetArray(p->vector, &own));
-  PetscCall(PetscArraycpy(own, values + first, end - first));
+  PetscCall(PetscArraycpy(own + p->first, values + p->each * first, p->each * n));
   PetscCall(VecRestoreArray(p->vector, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,13 +4,22 @@
 #include "scheme/scheme.h"
 
 /* A vector of a state on markers. */
-typedef enum { STATE_MARKERS, STATE_VELOCITY, STATE_TENSION, STATE_SOLIDS, STATE_PARTS } StatePartName;
+typedef enum {
+  STATE_MARKERS,
+  STATE_VELOCITY,
+  STATE_TENSION,
+  STATE_SOLIDS,
+  STATE_RATES,
+  STATE_PLACES,
+  STATE_PARTS
+} StatePartName;
 typedef struct {
   const char *name; /* in files */
   PetscInt each;    /* numbers a marker, or 1 */
-  Layout layout;    /* of the vesicles or the obstacles */
+  Layout layout;    /* of the vesicles, the obstacles or the free bodies; NULL: every rank has all numbers */
   Vec vector;
-  PetscInt n; /* markers; 0: the state has no such vector */
+  PetscInt n;     /* markers; 0: the state has no such vector */
+  PetscInt first; /* where the rank's numbers begin in its part of the vector */
 } StatePart;
 
 /* StatePartOf - a vector of a state of the scheme; not collective. StateGather - values[n][each] of all ranks, on every

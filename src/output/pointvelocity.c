@@ -31,24 +31,25 @@ static PetscErrorCode PointCells(PointVelocity *p) {
 static PetscErrorCode PointLayers(PointVelocity *p) {
   const Scheme s = p->scheme;
   const State *q = &s->state;
-  const Layout l = s->membrane->layout;
   const DoubleLayer contrast = s->coupling->mobility->contrast;
   const PetscReal nu = s->scene->fluid.nu;
   PetscReal *X, *F, *J;
-  Vec forces;
+  Vec forces, markers;
+  Layout l;
   PetscFunctionBeginUser;
+  PetscCall(CellForces(s, &l, &forces, &markers));
+  p->bodies = l->bodies;
   PetscCall(PetscCalloc1(2 * l->bodies, &p->layer));
-  PetscCall(PetscMalloc3(2 * l->M, &X, 2 * l->M, &F, 2 * l->M, &J));
-  PetscCall(VecDuplicate(q->X, &forces));
-  PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, forces));
-  PetscCall(LayoutGatherVec(l, q->X, X));
+  PetscCall(PetscMalloc3(2 * l->M, &X, 2 * l->M, &F, 2 * s->membrane->layout->M, &J));
+  PetscCall(LayoutGatherVec(l, markers, X));
   PetscCall(LayoutGatherVec(l, forces, F));
-  PetscCall(LayoutGatherVec(l, q->U, J));
+  PetscCall(LayoutGatherVec(s->membrane->layout, q->U, J));
   PetscCall(VecDestroy(&forces));
+  PetscCall(VecDestroy(&markers));
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt n = LayoutCount(l, v), first = 2 * l->start[v];
     PetscCall(CurveLayerCreate(&stokeslet, n, nu, X + first, F + first, &p->layer[2 * v]));
-    if (!contrast || contrast->ratio[v] == 1) continue;
+    if (!contrast || v >= s->membrane->layout->bodies || contrast->ratio[v] == 1) continue;
     for (PetscInt k = first; k < first + 2 * n; k++) J[k] *= 1 - contrast->ratio[v];
     PetscCall(CurveLayerCreate(&stresslet, n, nu, X + first, J + first, &p->layer[2 * v + 1]));
   }
@@ -69,7 +70,7 @@ PetscErrorCode PointVelocityBegin(Scheme s, PointVelocity *p) {
 /* u += the layers at x; inside a vesicle of another viscosity u is then the ratio times the velocity. */
 static void PointLayersAdd(const PointVelocity *p, const PetscReal x[2], PetscReal u[2]) {
   PetscReal ratio = 1, pressure = 0;
-  for (PetscInt v = 0; p->layer && v < p->scheme->membrane->layout->bodies; v++)
+  for (PetscInt v = 0; p->layer && v < p->bodies; v++)
     for (int kind = 0; kind < 2 && p->layer[2 * v + kind]; kind++) {
       PetscBool inside = PETSC_FALSE;
       CurveLayerAdd(p->layer[2 * v + kind], x, u, &pressure, &inside);
@@ -124,7 +125,7 @@ PetscErrorCode PointVelocityAt(PointVelocity *p, PetscInt n, const PetscReal X[]
 
 PetscErrorCode PointVelocityEnd(PointVelocity *p) {
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; p->layer && v < p->scheme->membrane->layout->bodies; v++)
+  for (PetscInt v = 0; p->layer && v < p->bodies; v++)
     for (int kind = 0; kind < 2; kind++) PetscCall(CurveLayerDestroy(&p->layer[2 * v + kind]));
   PetscCall(PetscFree(p->layer));
   PetscCall(PetscFree(p->cell));

@@ -3,8 +3,8 @@
        u = u_inf(x) + I[u - u_inf](x),
 
    I the cubic interpolation from the cells' centres (CellFields). Next to a wall u - u_inf is continued as an odd
-   function, so that it is zero at the wall. In unbounded fluid the exact layers of all membranes stand in the place of
-   I.
+   function, so that it is zero at the wall. In unbounded fluid the exact layers of all membranes and bodies stand in
+   the place of I.
 
    Begin once a state, At as often as wanted, End. */
 #pragma once
@@ -14,7 +14,8 @@
 typedef struct {
   Scheme scheme;     /* borrowed */
   PetscReal *cell;   /* [cells][2] u - u_inf of all ranks' cells; NULL in unbounded fluid */
-  CurveLayer *layer; /* [vesicles][2] in unbounded fluid: single, and double where a viscosity is another; else NULL */
+  PetscInt bodies;   /* that have layers */
+  CurveLayer *layer; /* [bodies][2] in unbounded fluid: single, and double where a viscosity is another; else NULL */
 } PointVelocity;
 
 /* PointVelocityAt - u[2n] at X[2n], which are the same on all ranks; each rank computes a share. Collective; stops with

@@ -1,4 +1,5 @@
 #include "output/record.h"
+#include "bodies/freebodies.h"
 #include "scheme/pressuredrop.h"
 #include "scheme/films.h"
 
@@ -20,7 +21,7 @@ PetscBool RecordIsOwn(int column) {
 
 /* Number of columns of one obstacle. */
 static PetscInt ObstacleEach(const SceneObstacles *o) {
-  return o->moving ? 6 : 3;
+  return o->free.count ? 9 : o->moving ? 6 : 3;
 }
 
 /* Number of columns of all obstacles; 0 without obstacles. */
@@ -32,7 +33,8 @@ static PetscInt ObstacleRowCount(const SceneObstacles *o) {
 
 static void ObstacleRowName(const SceneObstacles *o, PetscInt k, char name[RECORD_ENTRY]) {
   static const char *const totals[] = {"pressure_drop", "flux", "obstacle_force_x", "obstacle_force_y"};
-  static const char *const names[] = {"force_x", "force_y", "torque", "center_x", "center_y", "angle"};
+  static const char *const names[] = {"force_x", "force_y",    "torque",     "center_x", "center_y",
+                                      "angle",   "velocity_x", "velocity_y", "rotation"};
   if (k < OBSTACLE_TOTALS)
     (void)snprintf(name, RECORD_ENTRY, "%s", totals[k]);
   else
@@ -116,11 +118,13 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscScalar *F;
   ObstacleLoad *load;
+  PetscReal *q;
   Drive drive;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt curves = o->layout->bodies, count = ObstacleRowCount(&s->scene->obstacles);
-  PetscCall(PetscMalloc1(curves, &load));
+  PetscCall(PetscMalloc2(curves, &load, 3 * o->free->M, &q));
+  PetscCall(FreeBodiesRates(o, s->state.solid, q));
   PetscCall(VecGetArrayRead(s->state.solid, &F));
   PetscCall(ObstaclesLoads(o, StateInstant(&s->state), F, load));
   PetscCall(VecRestoreArrayRead(s->state.solid, &F));
@@ -131,13 +135,21 @@ static PetscErrorCode ObstacleRowTake(Scheme s, PetscReal values[]) {
   values[1] = drive.flux;
   for (PetscInt b = 0; b < curves; b++) {
     const BodyPose pose = MotionPose(&o->motion[b], StateInstant(&s->state));
-    const PetscReal own[] = {load[b].force[0], load[b].force[1], load[b].torque,
-                             pose.center[0],   pose.center[1],   pose.angle}; /* the last three where obstacles move */
+    const PetscInt free = 3 * (o->motion[b].free - 1);
+    const PetscReal own[] = {load[b].force[0],
+                             load[b].force[1],
+                             load[b].torque,
+                             pose.center[0], /* from here on where obstacles move */
+                             pose.center[1],
+                             pose.angle,
+                             free < 0 ? NAN : q[free], /* from here on where one moves freely */
+                             free < 0 ? NAN : q[free + 1],
+                             free < 0 ? NAN : q[free + 2]};
     const PetscInt each = ObstacleEach(&s->scene->obstacles);
     for (int c = 0; c < 2; c++) values[2 + c] += own[c];
     if (count > OBSTACLE_TOTALS) PetscCall(PetscArraycpy(values + OBSTACLE_TOTALS + each * b, own, each));
   }
-  PetscCall(PetscFree(load));
+  PetscCall(PetscFree2(load, q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -102,11 +102,16 @@ static PetscErrorCode RestartVectors(Scheme s, const State *q) {
     const char *name;
     Vec vector;
     PetscReal most;
-  } all[] = {{"velocity", q->w, PETSC_MAX_REAL},        {"flow", q->flow, PETSC_MAX_REAL},
-             {"pressure", q->p, PETSC_MAX_REAL},        {"markers", q->X, 1e9 * s->fluid->grid->h},
-             {"marker velocity", q->U, PETSC_MAX_REAL}, {"tension", q->sigma, PETSC_MAX_REAL}};
+  } all[] = {{"velocity", q->w, PETSC_MAX_REAL},
+             {"flow", q->flow, PETSC_MAX_REAL},
+             {"pressure", q->p, PETSC_MAX_REAL},
+             {"markers", q->X, 1e9 * s->fluid->grid->h},
+             {"marker velocity", q->U, PETSC_MAX_REAL},
+             {"tension", q->sigma, PETSC_MAX_REAL},
+             {"force on obstacles", q->solid, PETSC_MAX_REAL},
+             {"place of obstacles", q->place, 1e9 * s->fluid->grid->h}};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6; k++) {
+  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
     PetscReal largest = 0;
     PetscBool finite = PETSC_TRUE;
     if (!all[k].vector) continue;

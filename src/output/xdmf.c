@@ -130,7 +130,7 @@ static void PrintFrame(const Xdmf *x, FILE *f, PetscInt t, PetscReal time) {
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   if (s->membrane->layout->M) PrintVesicles(f, t, s->membrane->layout, wrapped);
-  if (solids) PrintObstacles(f, t, solids, s->scene->obstacles.moving, wrapped);
+  if (solids) PrintObstacles(f, t, solids, SceneObstaclesMove(&s->scene->obstacles), wrapped);
   if (x->tracers) PrintTracers(f, t, x->tracers, wrapped);
   fprintf(f, "</Grid>\n");
 }

@@ -1,6 +1,7 @@
 #include "precondition/obstacleblock.h"
 #include "base/agree.h"
 #include "numerics/blas.h"
+#include "precondition/freeblock.h"
 #include "precondition/obstaclemodes.h"
 #include "numerics/symmetric.h"
 
@@ -13,6 +14,8 @@ struct _p_ObstacleBlock {
   Instant made_at;       /* when which the bodies were where the factor has them */
   float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
   ObstacleModes modes;   /* NULL: dense inverse */
+  FreeBlock free;        /* on root, of bodies that move freely; NULL without */
+  PetscScalar *rates;    /* [3 free] their velocities, work */
   PetscScalar *all;      /* [2W] work */
   float *from, *to;      /* [2W] on root: work, what has been found */
   PetscInt coupled;      /* number of the factor that X and the vesicles' block are of; 0: they know no obstacles */
@@ -33,10 +36,11 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->obstacles = o;
   b->age = AgeNone();
   b->root = LayoutOwner(coupling->bodies->layout, 0);
-  PetscCall(PetscMalloc1(n, &b->all));
+  PetscCall(PetscMalloc2(n, &b->all, 3 * o->free->M, &b->rates));
   if (o->modes) PetscCall(ObstacleModesCreate(spec, coupling, b->root, &b->modes));
   if (o->layout->rank != b->root) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(n, &b->from, n, &b->to));
+  if (o->free->M) PetscCall(FreeBlockCreate(o, &b->free));
   if (!b->modes) PetscCall(PetscMalloc1(SymmetricSize(n), &b->inverse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,7 +53,9 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscCall(PetscFree2((*block)->from, (*block)->to));
   PetscCall(PetscFree((*block)->response));
   PetscCall(PetscFree2((*block)->force, (*block)->single));
-  PetscCall(PetscFree((*block)->all));
+  PetscCall(FreeBlockDestroy(&(*block)->free));
+  PetscCall(VecDestroy(&(*block)->made_at.place));
+  PetscCall(PetscFree2((*block)->all, (*block)->rates));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,28 +146,33 @@ static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
-  PetscLogEvent event;
-  PetscFunctionBeginUser;
-  PetscCall(PetvesEvent("FactorObstacles", &event));
-  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
-  AgeRenew(&b->age, b->coupling->fluid->alpha);
-  b->made_at = b->obstacles->at;
-  if (b->modes)
-    PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
-  else
-    PetscCall(MakeObstacleInverse(b, failed));
-  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* y = A^-1 x of the block's approximation, on root. */
-static PetscErrorCode InvertObstacles(ObstacleBlock b, const float x[], float y[]) {
+static PetscErrorCode InvertObstacles(void *block, const float x[], float y[]) {
+  const ObstacleBlock b = (ObstacleBlock)block;
   PetscFunctionBeginUser;
   if (b->modes)
     PetscCall(ObstacleModesApply(b->modes, x, y));
   else
     SymmetricMult(2 * b->obstacles->layout->M, b->inverse, x, y);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
+  PetscBool done = PETSC_TRUE;
+  PetscLogEvent event;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesEvent("FactorObstacles", &event));
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  AgeRenew(&b->age, b->coupling->fluid->alpha);
+  PetscCall(InstantCopy(b->obstacles->at, &b->made_at));
+  if (b->modes)
+    PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
+  else
+    PetscCall(MakeObstacleInverse(b, failed));
+  if (b->free && !*failed) PetscCall(FreeBlockSetUp(b->free, InvertObstacles, b, &done));
+  if (b->obstacles->free->M && !*failed)
+    PetscCall(AgreeFlag(b->obstacles->layout->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
+  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,12 +198,19 @@ PetscBool ObstacleBlockIsOlder(Coupling c) {
   return o && (o->moving || !c->fluid->steady) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-void ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
+PetscErrorCode ObstacleBlockGetMemory(ObstacleBlock b, PetscReal memory[]) {
+  const PetscScalar *place;
+  PetscFunctionBeginUser;
   memory[0] = b->made_at.t;
   AgeGetMemory(&b->age, memory + 1);
+  if (!b->made_at.place) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(b->made_at.place, &place));
+  PetscCall(PetscArraycpy(memory + OBSTACLE_BLOCK_MEMORY, place, 3 * b->obstacles->free->M));
+  PetscCall(VecRestoreArrayRead(b->made_at.place, &place));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]) {
+PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock b, const PetscReal memory[]) {
   PetscBool failed;
   PetscFunctionBeginUser;
   PetscCall(MakeObstacleFactor(b, &failed));
@@ -263,6 +281,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
     PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
   }
   if (root) PetscCall(InvertObstacles(b, b->from, b->to));
+  PetscCall(LayoutToRank(b->obstacles->free, b->root, 3, r + 2 * l->n, b->rates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -277,7 +296,9 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
     if (root) PetscCall(DenseSingleMultAdd(PETSC_FALSE, w, m, -1, b->response, b->single, b->to));
   }
   for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
+  if (b->free) PetscCall(FreeBlockSolve(b->free, b->to, b->rates, b->all));
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
+  PetscCall(LayoutFromRank(b->obstacles->free, b->root, 3, b->rates, solid + 2 * l->n));
   ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->at, solid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -41,11 +41,12 @@ PETSC_EXTERN PetscBool ObstacleBlockRenewed(ObstacleBlock block);
 PETSC_EXTERN PetscBool ObstacleBlockIsOlder(Coupling coupling);
 
 /* ObstacleBlockGetMemory, ObstacleBlockSetMemory - what is kept of such factors, for a checkpoint (precondition.h):
-   memory[0] is the time at which the factor was made, then its age, with alpha, negative: none, in memory[1]. Set makes
-   it again, with the coupling placed at that time and for that alpha. Set is collective. */
+   memory[0] is the time at which the factor was made, then its age, with alpha, negative: none, in memory[1], then the
+   places of free bodies at that time [3 free]. Set makes it again, with the coupling placed at that instant and for
+   that alpha. Set is collective. */
 #define OBSTACLE_BLOCK_MEMORY (1 + AGE_MEMORY)
-PETSC_EXTERN void ObstacleBlockGetMemory(ObstacleBlock block, PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
-PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const PetscReal memory[OBSTACLE_BLOCK_MEMORY]);
+PETSC_EXTERN PetscErrorCode ObstacleBlockGetMemory(ObstacleBlock block, PetscReal memory[]);
+PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const PetscReal memory[]);
 
 /* ObstacleBlockCouple - from here on with what vesicles and obstacles do to one another where the coupling has been
    placed: X = A^-1 K, A the obstacles' block, K their velocity by forces on the vesicles, and Mob[2M][2M], the
@@ -54,10 +55,10 @@ PETSC_EXTERN PetscErrorCode ObstacleBlockSetMemory(ObstacleBlock block, const Pe
 PETSC_EXTERN PetscErrorCode ObstacleBlockCouple(ObstacleBlock block, MeanMobility mobility, PetscReal Mob[],
                                                 PetscBool *failed);
 
-/* ObstacleBlockBegin - A^-1 r of the own obstacles' residuals r[2w], kept in the block; U[2n] -= X^T r of the own
-   vesicles. ObstacleBlockEnd - and with the own vesicles' forces F[2n]: F_w = A^-1 r - X F to solid[2w]; F is not
-   looked at where nothing has been coupled, X = 0. Collective.
-   ObstacleBlockCoupled - whether it has been. Not collective. */
+/* ObstacleBlockBegin - A^-1 r of the own obstacles' residuals r[2w + 3 own free], kept in the block; U[2n] -= X^T r of
+   the own vesicles. ObstacleBlockEnd - and with the own vesicles' forces F[2n]: F_w = A^-1 r - X F to solid[2w], with
+   the velocities of free bodies behind (freeblock.h); F is not looked at where nothing has been coupled, X = 0.
+   Collective. ObstacleBlockCoupled - whether it has been. Not collective. */
 PETSC_EXTERN PetscErrorCode ObstacleBlockBegin(ObstacleBlock block, PetscScalar r[], PetscScalar U[]);
 PETSC_EXTERN PetscBool ObstacleBlockCoupled(ObstacleBlock block);
 PETSC_EXTERN PetscErrorCode ObstacleBlockEnd(ObstacleBlock block, const PetscScalar F[], PetscScalar solid[]);

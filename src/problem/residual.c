@@ -1,4 +1,5 @@
 #include "problem/residual.h"
+#include "bodies/freebodies.h"
 
 /* (2) F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), and the unknown F of obstacles. */
 static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
@@ -7,7 +8,7 @@ static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(F, &f));
   PetscCall(UnknownsForce(u, x, f));
-  PetscCall(PetscArraycpy(f + u->velocity, x + u->velocity, u->solid));
+  PetscCall(PetscArraycpy(f + u->velocity, x + u->velocity, BodiesObstacleNumbers(u->coupling->bodies)));
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -41,7 +42,7 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   const Layout l = c->membrane->layout;
-  const PetscInt n = u->velocity, edges = UnknownsEdges(u);
+  const PetscInt n = u->velocity, edges = UnknownsEdges(u), markers = 2 * c->bodies->layout->n;
   const PetscScalar *G;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(y, edges));
@@ -50,10 +51,13 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
     for (PetscInt k = 2 * LayoutOffset(l, v); k < 2 * (LayoutOffset(l, v) + LayoutCount(l, v)); k++)
       y[k] = MobilityWeight(c->mobility, v) * G[k];
   PetscCall(VecRestoreArrayRead(s->G, &G));
-  PetscCall(Subtract(s->U, edges, y)); /* (3), (5) - U - k */
-  if (q) PetscCall(Subtract(q->k, edges, y));
-  if (c->bodies->obstacles) ObstaclesRows(c->bodies->obstacles, x + n, y + n); /* (5) beta N N^T F */
-  LawRows(c->law, x, x + edges, y + edges);                                    /* (4) Dm V/h^2 - g */
+  PetscCall(Subtract(s->U, markers, y)); /* (3), (5) - U - k */
+  if (q) PetscCall(Subtract(q->k, markers, y));
+  if (c->bodies->obstacles) { /* (5) beta N N^T F + m R q, (6) */
+    ObstaclesRows(c->bodies->obstacles, x + n, y + n);
+    FreeBodiesRows(c->bodies->obstacles, q ? PETSC_TRUE : PETSC_FALSE, x + n, y + n);
+  }
+  LawRows(c->law, x, x + edges, y + edges); /* (4) Dm V/h^2 - g */
   if (q) PetscCall(Subtract(q->g, u->edges, y + edges));
   LawReplaceAreas(c->law, q ? PETSC_TRUE : PETSC_FALSE, x, y); /* in (3) */
   UnknownsScale(u, PETSC_FALSE, y);

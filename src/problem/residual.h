@@ -5,13 +5,14 @@
        (3)  (1 + ratio)/2 G - U = k                             vesicles' markers move with the fluid
             G = V + (v/a0) dV/dt + known
        (4)  Dm V/h^2 = g                                        inextensible edges
-       (5)  U - beta N N^T F + k = 0                            no slip on obstacles, whose F is unknown
+       (5)  U - beta N N^T F - m R q + k = 0                    no slip on obstacles, whose F is unknown
+       (6)  R^T F + load = 0                                    obstacles that move freely, with the velocity q
 
    V is the markers' velocity without the background's, seen from labels that turn at the speed v of their vesicle; G is
    their motion; K is what the forces change by with their markers (bodies/force.h); k is the background's velocity,
    less that of the obstacle.
 
-   A Stokes solve gives the fluid's velocity and pressure for any force. So the unknowns are V, the obstacles' F and
+   A Stokes solve gives the fluid's velocity and pressure for any force. So the unknowns are V, the obstacles' F, q and
    sigma, and a product with the operator costs one Stokes solve for the velocity at the markers alone; velocity and
    pressure on the grid follow from the solution's forces.
 

@@ -1,4 +1,5 @@
 #include "problem/unknowns.h"
+#include "bodies/freebodies.h"
 
 /* 2 R0 of the smallest vesicle, without vesicles half of the box's shorter side. */
 static PetscReal Length(Coupling c) {
@@ -18,6 +19,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   u->length = Length(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
+  if (coupling->bodies->obstacles) u->solid += FreeBodiesOwn(coupling->bodies->obstacles);
   u->edges = LawNumbers(coupling->law);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,7 @@
 /* The unknowns of the reduced coupled problem and the norm of its residuals (docs/solver.md, Reduced unknowns). A
    rank's part of the vector is V [2n], the solved part of its own markers' velocity, F [2w], the fluid's force on its
-   own obstacles' markers, and sigma [n], the unknowns of the membranes' law at its own edges (bodies/law.h), the
-   tension. Residuals are laid out alike. */
+   own obstacles' markers, with the velocities q of own free bodies behind (bodies/freebodies.h), and sigma [n], the
+   unknowns of the membranes' law at its own edges (bodies/law.h), the tension. Residuals are laid out alike. */
 #pragma once
 #include "problem/coupling.h"
 
@@ -32,6 +32,7 @@ PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec 
        Dm V/h^2 = g                   (nu + h l alpha) h^2/ds
        V = E u - C F                  the same over h^2, times sqrt(bending force over viscous force)
        obstacles                      (nu + h l alpha)/ds
+       force and torque on a body     1/ds, 1/(ds radius)
 
    h l alpha weighs short steps, in which the momentum's right-hand side alpha u would hide the other rows. Not
    collective. */

@@ -40,6 +40,10 @@ PETSC_EXTERN PetscErrorCode SceneChooseInertia(Draft scene);
 #define SCENE_MODEL 128
 PETSC_EXTERN void SceneModel(Scene scene, char text[SCENE_MODEL]);
 
+/* SceneChooseFreeBodies - which obstacles move freely, and what -obstacle_free and the scene need for it
+   (freebodies.c). Collective; stops with the user's message. */
+PETSC_EXTERN PetscErrorCode SceneChooseFreeBodies(Draft scene);
+
 /* SceneCheckObstacles - method, places and sizes of the obstacles and of the vesicles among them (obstaclechecks.c);
    finds what is around each. Collective; stops with the user's message. */
 PETSC_EXTERN PetscErrorCode SceneCheckObstacles(Draft scene);

@@ -10,17 +10,17 @@
 /* clang-format off */
 static PetscErrorCode ObstaclesCheckMethod(Scene s) {
   const SceneRule rules[] = {
-    {FluidSpecIsFree(&s->fluid),
-     "-obstacle_shape: not with -domain_bc_x free, where a body held in a flow has no finite velocity in two dimensions; allowed: walls, or periodic boundaries"},
+    {FluidSpecIsFree(&s->fluid) && s->obstacles.free.count < s->obstacles.outline.vesicles,
+     "-obstacle_shape: not with -domain_bc_x free, where a body held in a flow has no finite velocity in two dimensions; allowed: walls, or periodic boundaries, or -obstacle_free all"},
     {SceneIsProjection(s),
      "-obstacle_shape: not with -scheme_type {-scheme_type}; allowed: coupled"},
     {s->fluid.inertia != INERTIA_AUTO && s->fluid.inertia != INERTIA_NONE && s->obstacles.spacing > 1.5,
      "-obstacle_spacing {-obstacle_spacing}: with inertia of the fluid obstacles so far apart leak; allowed: at most 1.5, or -fluid_inertia none"},
     {s->coupling.near_field != NEAR_EXACT,
      "-obstacle_shape: not with -coupling_near_field none; allowed: exact"},
-    {!SceneHasBoxPart(s) && s->coupling.box_part,
+    {!SceneHasBoxPart(s) && s->coupling.box_part && !FluidSpecIsFree(&s->fluid),
      "-domain_box {-domain_box}: obstacles need a box at most %.0f times as long as high; allowed: shorter periods", {FLUID_LONGEST_PERIOD}},
-    {!SceneHasBoxPart(s),
+    {!SceneHasBoxPart(s) && !FluidSpecIsFree(&s->fluid),
      "-coupling_box_part {-coupling_box_part}: without it forces of obstacles are wrong by parts of a hundred; allowed: true"}};
   return REFUSE(s, rules);
 }

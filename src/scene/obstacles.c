@@ -275,8 +275,8 @@ static PetscErrorCode ObstaclesPlaceMarkers(Scene scene, const Outlines *o, Scen
   PetscCall(ObstaclesCreateShape(scene, o, shape));
   PetscCall(ObstaclesChooseFactor(scene, o, own));
   PetscCall(PetscMalloc2(scene->shape.vesicles + o->count, &own->holder, o->count, &own->vesicle));
-  PetscCall(PetscCalloc4(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
-                         &own->wall));
+  PetscCall(PetscCalloc5(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
+                         &own->wall, o->count, &own->free.is));
   own->circles = own->shape == OBSTACLE_POSTS || own->shape == OBSTACLE_COUETTE ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = 0; k < o->count; k++) {
     const Outline *one = &o->of[k];
@@ -310,6 +310,7 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   scene->fluid.held = PETSC_TRUE;
   for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.of[k].curve));
   PetscCall(PetscFree(o.of));
+  PetscCall(SceneChooseFreeBodies(scene));
   PetscCall(SceneCheckObstacles(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -320,6 +321,6 @@ PetscErrorCode SceneDropObstacles(Draft scene) {
   if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&own->outline));
   PetscCall(PetscFree2(own->holder, own->vesicle));
-  PetscCall(PetscFree4(own->velocity, own->turn, own->container, own->wall));
+  PetscCall(PetscFree5(own->velocity, own->turn, own->container, own->wall, own->free.is));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

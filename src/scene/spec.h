@@ -67,12 +67,22 @@ typedef struct {
   RealList density; /* difference over the outer density, one for all or one a vesicle */
 } SceneGravity;
 
+/* Obstacles that move as the fluid carries them. */
+typedef struct {
+  char which[PETSC_MAX_PATH_LEN]; /* their numbers from 1 on, or all; empty: none */
+  RealList density;               /* over that of the fluid outside */
+  RealList force, torque;         /* from outside (length^3/time^2), (length^4/time^2) */
+  PetscBool *is;                  /* [curves] which move freely */
+  PetscInt count;
+} SceneFreeBodies;
+
 /* Solid bodies in the fluid. */
 typedef struct {
   PetscInt shape; /* ObstacleShape */
   RealList radius, center, move, rotation;
-  PetscReal frequency;           /* angular, of the surfaces' velocities (1/time); 0: steady */
-  PetscBool moving;              /* closed curves go with their velocities */
+  PetscReal frequency; /* angular, of the surfaces' velocities (1/time); 0: steady */
+  PetscBool moving;    /* closed curves go with their velocities */
+  SceneFreeBodies free;
   IntList lattice;               /* columns and rows; 0, 0: none */
   PetscReal shift;               /* of a row against the one below, over the distance of columns */
   PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */
@@ -88,6 +98,11 @@ typedef struct {
   PetscBool circles;             /* all curves are circles, which turns do not change */
   PetscInt *wall; /* [curves] 2 direction + side of the wall that an open curve is on; -1 of other curves */
 } SceneObstacles;
+
+/* SceneObstaclesMove - whether a curve may be where it was not at time 0. Not collective. */
+static inline PetscBool SceneObstaclesMove(const SceneObstacles *obstacles) {
+  return obstacles->moving || obstacles->free.count ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* Passive points, src/output/tracers.h. */
 typedef struct {

@@ -46,6 +46,14 @@ static PetscBool HasPotential(const void *scene) {
   return ((Scene)scene)->potential.strength > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool HasFreeBodies(const void *scene) {
+  return *((Scene)scene)->obstacles.free.which ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HasHeavy(const void *scene) {
+  return HasFreeBodies(scene) || IsCoupled(scene) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The 0 that stands for no springs is right for all schemes. */
 static PetscBool HasSprings(const void *scene) {
   const SceneScheme *scheme = &((Scene)scene)->scheme;
@@ -105,6 +113,8 @@ static const OptionNeed
   need_posts = {"-obstacle_shape posts", AT(obstacles.shape), IS(OBSTACLE_POSTS)},
   need_constriction = {"-obstacle_shape constriction", AT(obstacles.shape), IS(OBSTACLE_CONSTRICTION)},
   need_solid_centers = {"-obstacle_shape posts, couette or constriction", AT(obstacles.shape), ~(IS(OBSTACLE_NONE) | IS(OBSTACLE_FILE))},
+  need_free = {"-obstacle_free", .met = HasFreeBodies},
+  need_heavy = {"vesicles and -scheme_type coupled, or -obstacle_free", .met = HasHeavy},
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
 
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
@@ -132,7 +142,7 @@ static const OptionRow table[] = {
   {"-flow_drive", OPT_ENUM, AT(fluid.drive), "pressure", "pressure|flux", "channel, periodic in x: which quantity vesicles and obstacles do not change, the mean pressure gradient or the flux", &need_period},
   {"-fluid_viscosity", OPT_REAL, AT(fluid.nu), "1", ">0", "nu (length^2/time; density is 1)"},
   {"-fluid_inertia", OPT_ENUM, AT(fluid.inertia), "auto", "auto|none|unsteady|convective", "inertia of the fluid: quasi-steady Stokes, unsteady Stokes, Navier-Stokes; auto goes by flow and Reynolds number"},
-  {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference", &need_coupled},
+  {"-fluid_gravity", OPT_REALS, AT(gravity.g), "0,0", "any", "gravity g_x,g_y (length/time^2); it moves vesicles by -vesicle_density_difference, free obstacles by -obstacle_density", &need_heavy},
   {"-vesicle_shape", OPT_ENUM, AT(vesicles.shape), "ellipse", "ellipse|biconcave|file|none", "initial shape; biconcave: the red cell's outline"},
   {"-vesicle_count", OPT_INT, AT(vesicles.count), "1", ">=1", "number of vesicles; a file has its own number of curves, a packing the number that it takes", &need_vesicles},
   {"-vesicle_semi_axes", OPT_REALS, AT(vesicles.axes), "0.2,0.5", ">0", "semi-axes of the ellipse, two for all, or two a vesicle or kind (length)", &need_ellipses},
@@ -163,6 +173,10 @@ static const OptionRow table[] = {
   {"-obstacle_rotation", OPT_REALS, AT(obstacles.rotation), "0", "any", "rate at which the surfaces turn about their curves' middles, counter-clockwise, one for all or one each (1/time)", &need_circles},
   {"-obstacle_frequency", OPT_REAL, AT(obstacles.frequency), "0", ">=0", "the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)", &need_obstacles},
   {"-obstacle_moving", OPT_BOOL, AT(obstacles.moving), "false", "true|false", "closed obstacles move and turn as solid bodies with the velocities given (of a file: its lines # velocity and # rotation); false: they rest, and only their surfaces move", &need_obstacles},
+  {"-obstacle_free", OPT_TEXT, AT(obstacles.free.which), "", "", "numbers of the closed obstacles, from 1 on, with commas between, that move and turn as the fluid carries them, or all", &need_obstacles},
+  {"-obstacle_density", OPT_REALS, AT(obstacles.free.density), "1", ">0", "density of free obstacles over that of the fluid, for their weight under -fluid_gravity; one for all or one an obstacle", &need_free},
+  {"-obstacle_force", OPT_REALS, AT(obstacles.free.force), "0,0", "any", "f_x,f_y from outside on free obstacles, over the fluid's density and a unit of depth; a pair for all or one an obstacle (length^3/time^2)", &need_free},
+  {"-obstacle_torque", OPT_REALS, AT(obstacles.free.torque), "0", "any", "torque from outside on free obstacles about their centroids, counter-clockwise; one for all or one an obstacle (length^4/time^2)", &need_free},
   {"-obstacle_file", OPT_PATH, AT(obstacles.file), "", "", "curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own", &need_obstacle_file, MAY_CHANGE},
   {"-obstacle_spacing", OPT_REAL, AT(obstacles.spacing), "1", "[0.3,2]", "spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it", &need_obstacles},
   {"-obstacle_factor", OPT_ENUM, AT(obstacles.factor), "auto", "auto|dense|modes", "preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways", &need_obstacles},

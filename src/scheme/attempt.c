@@ -1,4 +1,5 @@
 /* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
+#include "bodies/freebodies.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
 
@@ -67,15 +68,21 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution extrapolated: sigma and V = U - (labels' speed) dX/dt - u_inf. */
+/* The solution extrapolated: sigma and V = U - (labels' speed) dX/dt - u_inf; forces on free bodies are in balance. */
 static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   State *n = &d->next;
   History *h = &d->history;
   const PetscInt count = PetscMax(1, PetscMin(h->solved, s->plan.guess));
   PetscReal weight[BDF_STATES];
+  PetscScalar *F;
   PetscFunctionBeginUser;
   BDFGuess(count, h->step, weight);
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
+  if (n->place) {
+    PetscCall(VecGetArray(n->solid, &F));
+    PetscCall(FreeBodiesBalance(s->coupling->bodies->obstacles, F));
+    PetscCall(VecRestoreArray(n->solid, &F));
+  }
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
   PetscCall(HistorySum(count, weight, 1, h->U, d->V));
   PetscCall(VecAXPY(d->V, -1, s->background));
@@ -116,17 +123,21 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt. */
-static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
+/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt; free bodies by the same formula. */
+static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, const BDF *b) {
   State *n = &d->next;
   PetscFunctionBeginUser;
+  if (n->place) {
+    PetscCall(HistorySum(b->order, b->history, 1 / b->a0, STATES(s, place), n->place));
+    PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, b->a0, n->place));
+  }
   if (n->p)
     PetscCall(SchemeMeasureDivergence(s, n->w, NULL));
   else
     s->report.div_max = s->report.measures.divergence;
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeMarkerVelocity(s, d->V, n->sigma, d->P));
-  PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
+  PetscCall(VecWAXPY(n->X, 1 / b->a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -179,6 +190,9 @@ PetscErrorCode CoupledEstimate(Scheme s, PetscReal *error) {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(d->Xstar, d->Y));
   PetscCall(LargestDifference(s, d->next.X, d->Y, &found[0]));
+  if (d->place)
+    found[0] = PetscMax(found[0], ObstaclesStride(s->coupling->bodies->obstacles, (Instant){.place = d->place},
+                                                  (Instant){.place = d->next.place}));
   if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   *error = found[1] > 0 ? NAN : found[0] / SmallestRadius(s->membrane);
@@ -195,6 +209,29 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Free bodies: largest = max(largest, that of places, or (rates) of velocities q at the farthest markers). */
+static PetscErrorCode MissBodies(Scheme s, Coupled *d, PetscInt count, PetscBool rates, PetscReal *largest) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const Vec x = rates ? d->next.solid : d->next.place;
+  PetscReal star[BDF_STATES];
+  const PetscScalar *q;
+  Vec guess;
+  PetscFunctionBeginUser;
+  if (!d->place) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(x, &guess));
+  BDFGuess(count, d->history.step, star);
+  PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), guess));
+  if (rates) {
+    PetscCall(VecAXPY(guess, -1, x));
+    PetscCall(VecGetArrayRead(guess, &q));
+    *largest = PetscMax(*largest, FreeBodiesSpeed(o, q));
+    PetscCall(VecRestoreArrayRead(guess, &q));
+  } else
+    *largest = PetscMax(*largest, ObstaclesStride(o, (Instant){.place = guess}, (Instant){.place = x}));
+  PetscCall(VecDestroy(&guess));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Order 3 where the motion is so smooth that three states tell the next one better than two; and a guess by as
    many states as would have told this one's velocity best, of those whose velocity is known. */
 static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
@@ -203,9 +240,14 @@ static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   StepPlan *next = &d->next_plan;
   PetscReal miss[BDF_MOST - 1 + BDF_STATES] = {0}, *of_U = miss + BDF_MOST - 1;
   PetscFunctionBeginUser;
-  for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++)
+  for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++) {
     PetscCall(Miss(s, d, k, h->X, d->next.X, &miss[k - 2]));
-  for (PetscInt k = 1; k <= solved; k++) PetscCall(Miss(s, d, k, h->U, d->next.U, &of_U[k - 1]));
+    PetscCall(MissBodies(s, d, k, PETSC_FALSE, &miss[k - 2]));
+  }
+  for (PetscInt k = 1; k <= solved; k++) {
+    PetscCall(Miss(s, d, k, h->U, d->next.U, &of_U[k - 1]));
+    PetscCall(MissBodies(s, d, k, PETSC_TRUE, &of_U[k - 1]));
+  }
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, miss, BDF_MOST - 1 + BDF_STATES, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   next->order = miss[1] < SMOOTH * miss[0] ? 3 : PetscMin(s->scene->scheme.order, 2);
@@ -225,7 +267,8 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   const BDF b = BDFCoefficients(d->order = Order(s, h), h->step);
   PetscCall(HistorySum(b.order, b.star, 1, h->X, d->Xstar));
   PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
-  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, (Instant){s->state.t + d->done + dt}));
+  if (d->place) PetscCall(HistorySum(b.order, b.star, 1, STATES(s, place), d->place));
+  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, (Instant){s->state.t + d->done + dt, d->place}));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal aim = d->start ? 0 : b.a0; /* at edges and areas: the first ones have them */
   if (s->membrane->viscosity > 0) {
@@ -242,7 +285,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   PetscCall(InitialGuess(s, d));
   PetscCall(Solve(s, d));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MoveMarkers(s, d, b.a0));
+  PetscCall(MoveMarkers(s, d, &b));
   PetscCall(MeasureStress(s, d));
   PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -292,6 +335,7 @@ PetscErrorCode CoupledStart(Scheme s) {
   FluidSetSteady(s->fluid, steady);
   if (!*s->report.failure) {
     PetscCall(VecCopy(now->X, next->X));
+    if (now->place) PetscCall(VecCopy(now->place, next->place));
     PetscCall(StateCopy(next, now, PETSC_TRUE));
     now->fields = CoupledMakes(d);
     now->solved = PETSC_TRUE;

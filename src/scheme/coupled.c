@@ -100,7 +100,7 @@ static PetscErrorCode Advance(Scheme s, StepTrial *trial, const StepPlan *before
   StepPlan plan;
   PetscFunctionBeginUser;
   PetscCall(CoupledAdvance(s, trial->dt));
-  PetscCall(FilmsLoss(s, (Instant){s->state.t + trial->dt}, &trial->loss));
+  PetscCall(FilmsLoss(s, (Instant){s->state.t + trial->dt, s->state.place}, &trial->loss));
   if (trial->loss == 0) PetscFunctionReturn(PETSC_SUCCESS);
   s->plan.level = before->level;
   PetscCall(Decide(s, trial, verdict));
@@ -230,6 +230,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));
   for (int i = 0; i < 7; i++) PetscCall(VecDuplicate(s->state.X, markers[i]));
+  if (s->state.place) PetscCall(VecDuplicate(s->state.place, &d->place));
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
@@ -238,13 +239,13 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
 
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  Vec *others[] = {&d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at, &d->moved, &d->force};
+  Vec *others[] = {&d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at, &d->moved, &d->force, &d->place};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
   PetscCall(ConvectionDestroy(&d->convection));
   PetscCall(StateDestroy(&d->next));
   PetscCall(HistoryDestroy(&d->history));
-  for (int i = 0; i < 9; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 10; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->made_with));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);

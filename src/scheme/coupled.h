@@ -20,6 +20,7 @@ typedef struct {
   PetscReal *made_with;  /* [vesicles] label speeds with which these blocks were made */
   StreamPast past;       /* the states before, where their flows act as a force */
   Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
+  Vec place;             /* of free bodies, extrapolated; NULL without */
   Vec moved;             /* known part of the markers' motion */
   Vec force;             /* minus the known part of the force on all bodies' markers */
   Vec V, known, Y;       /* solved part and known part of the markers' velocity, obstacles included; work */

@@ -15,7 +15,8 @@ static PetscInt AtBlock(Scheme s) {
 }
 
 PetscInt SchemeMemorySize(Scheme s) {
-  return AtBlock(s) + (ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY : 0);
+  const Obstacles o = s->coupling->bodies->obstacles;
+  return AtBlock(s) + (ObstacleBlockIsOlder(s->coupling) ? OBSTACLE_BLOCK_MEMORY + 3 * o->free->M : 0);
 }
 
 /* Whether solvers have kept something: those of the scheme that goes on from several states, after a step. */
@@ -29,7 +30,7 @@ PetscErrorCode SchemeRemember(Scheme s, PetscReal memory[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(memory, SchemeMemorySize(s)));
   if (!SolversRemember(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (OlderBlock(s)) ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s));
+  if (OlderBlock(s)) PetscCall(ObstacleBlockGetMemory(OlderBlock(s), memory + AtBlock(s)));
   PreconditionerGetMemory(d->solver->preconditioner, memory);
   if (d->solver->preconditioner->shapes) {
     SharedShapesGetMemory(d->solver->preconditioner->shapes, memory + AGE_MEMORY);
@@ -64,13 +65,22 @@ static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, Instant at, Vec X, cons
 
 static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
   char message[PETVES_MAX_MESSAGE];
+  Instant at = {memory[0]};
+  PetscScalar *place;
   PetscFunctionBeginUser;
   if (!OlderBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->scene, (Instant){memory[0]}, message));
+  if (s->state.place) {
+    PetscCall(VecDuplicate(s->state.place, &at.place));
+    PetscCall(VecGetArray(at.place, &place));
+    PetscCall(PetscArraycpy(place, memory + OBSTACLE_BLOCK_MEMORY, 3 * s->coupling->bodies->obstacles->free->M));
+    PetscCall(VecRestoreArray(at.place, &place));
+  }
+  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->scene, at, message));
   PetscCheck(memory[0] >= 0 && memory[0] <= LATEST * (s->state.t + s->state.dt) && !*message, s->scene->comm,
              PETSC_ERR_USER_INPUT, "-restart %s: its solver's memory is of time %g; allowed: a checkpoint.h5 of petves",
              s->scene->output.restart, (double)memory[0]);
-  PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, (Instant){memory[0]}, s->state.X, NULL));
+  PetscCall(PlaceAgain(s, memory[1] > 0 ? memory[1] : 1, at, s->state.X, NULL));
+  PetscCall(VecDestroy(&at.place));
   PetscCall(ObstacleBlockSetMemory(OlderBlock(s), memory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 #include "scheme/state.h"
+#include "bodies/freebodies.h"
 
-#define VECTORS 7
+#define VECTORS 8
 #define ON_GRID 3 /* the first ones */
 
 static void List(State *q, Vec *all[VECTORS]) {
@@ -11,6 +12,7 @@ static void List(State *q, Vec *all[VECTORS]) {
   all[4] = &q->X;
   all[5] = &q->U;
   all[6] = &q->solid;
+  all[7] = &q->place;
 }
 
 PetscErrorCode StateCreate(Coupling c, State *q) {
@@ -22,7 +24,7 @@ PetscErrorCode StateCreate(Coupling c, State *q) {
   PetscCall(LayoutCreateVec(l, 2, &q->X));
   PetscCall(VecDuplicate(q->X, &q->U));
   PetscCall(LayoutCreateVec(l, 1, &q->sigma));
-  if (c->bodies->obstacles) PetscCall(LayoutCreateVec(c->bodies->obstacles->layout, 2, &q->solid));
+  if (c->bodies->obstacles) PetscCall(FreeBodiesCreateVecs(c->bodies->obstacles, &q->solid, &q->place));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,12 +20,14 @@ typedef struct {
   Vec sigma; /* unknowns of the membranes' law (bodies/law.h), the tension; an edge vector */
   Vec X;     /* markers, a marker vector */
   Vec U;     /* markers' velocity, background included */
-  Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2); NULL without */
+  Vec solid; /* the fluid's force on the markers of obstacles (length^3/time^2), then the velocities of own free bodies
+                (bodies/freebodies.h); NULL without obstacles */
+  Vec place; /* of free bodies, on every rank; NULL without */
 } State;
 
 /* StateInstant - its time and its bodies' places. Not collective. */
 static inline Instant StateInstant(const State *state) {
-  return (Instant){state->t};
+  return (Instant){state->t, state->place};
 }
 
 /* StateCreate - a state at rest, of zero vectors. StateDuplicate - zero vectors of the same kinds; times are not

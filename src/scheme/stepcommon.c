@@ -97,13 +97,14 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
 /* That moving bodies run into nothing that is solid, nor step over it. */
 static PetscErrorCode CheckBodies(Scheme s, Instant at) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const char *advice = "a -time_end before that, or other velocities";
+  const char *advice = s->state.place ? "a smaller -time_step, or a -time_end before that"
+                                      : "a -time_end before that, or other velocities";
   PetscFunctionBeginUser;
   if (!o || !o->moving) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstaclesCheck(o, s->scene, at, s->report.failure));
   if (!*s->report.failure) {
     advice = "a smaller -time_step";
-    PetscCall(ObstaclesCheckStride(o, (Instant){at.t - s->state.dt}, at, s->report.failure));
+    PetscCall(ObstaclesCheckStride(o, (Instant){at.t - s->state.dt, s->state.place}, at, s->report.failure));
   }
   if (*s->report.failure) PetscCall(SchemeAdvise(s, advice));
   PetscCall(AgreeMessage(s->scene->comm, s->report.failure));

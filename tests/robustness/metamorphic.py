@@ -37,7 +37,7 @@ OPTIONS = units(
     domain_box box 1 0; domain_cells pair 0 0; domain_bc pair 0 0; flow_rate scalar 0 -1;
     flow_peak_velocity along-x 1 -1; flow_half_width scalar 1 0; flow_center place 1 0; flow_velocity vector 1 -1;
     fluid_viscosity scalar 2 -1; fluid_gravity vector 1 -2; vesicle_bending scalar 5 -2; obstacle_center place 1 0;
-    obstacle_radius scalar 1 0; obstacle_velocity vector 1 -1; obstacle_rotation spin 0 -1;
+    obstacle_radius scalar 1 0; obstacle_velocity vector 1 -1; obstacle_rotation spin 0 -1; obstacle_force vector 3 -2; obstacle_torque spin 4 -2;
     obstacle_frequency scalar 0 -1; contact_repulsion scalar 2 -2; contact_repulsion_range scalar 1 0;
     contact_adhesion scalar 3 -2; contact_adhesion_range scalar 1 0; time_step scalar 0 1; time_end scalar 0 1;
     time_adapt_max_step scalar 0 1; output_every scalar 0 1
@@ -52,7 +52,7 @@ COLUMNS = units(
     frequency scalar 0 -1; area_shift scalar 1 0; normal_speed scalar 1 -1; velocity vector 1 -1; gap scalar 1 0;
     viscosity_wall scalar 0 0; viscosity scalar 0 0; normal_stress_wall scalar 2 -2; normal_stress scalar 2 -2;
     pressure_drop along-x 2 -2; flux along-x 2 -1; obstacle_force vector 3 -2; obstacle_torque spin 4 -2;
-    obstacle_center place 1 0; obstacle_angle spin 0 0; div_max scalar 0 -1; surface_div_max scalar 0 -1;
+    obstacle_center place 1 0; obstacle_angle spin 0 0; obstacle_rotation spin 0 -1; obstacle_velocity vector 1 -1; div_max scalar 0 -1; surface_div_max scalar 0 -1;
     markers place 1 0
     """
 )

@@ -157,7 +157,7 @@ static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
   speed[0] = Largest(n, cells[1]);
   PetscCall(VecDuplicate(w.X, &F));
   PetscCall(CouplingForces(w.coupling, (Instant){0}, sigma, w.X, F));
-  PetscCall(SingleCellsCorrect(&w.coupling->mobility->near->set, &w.coupling->mobility->near->lattice, F, w.X,
+  PetscCall(SingleCellsCorrect(&w.coupling->mobility->near->set, &w.coupling->mobility->near->lattice, w.layout, F, w.X,
                                (PetscReal *[]){cells[1], NULL, cells[0]}));
   PetscCall(VecDestroy(&F));
   PetscCall(JumpError(g, center, cells[0], &after));

@@ -1,0 +1,128 @@
+#include "bodies/freebodies.h"
+
+PetscErrorCode FreeBodiesCreateVecs(Obstacles o, Vec *force, Vec *place) {
+  PetscScalar *y;
+  PetscFunctionBeginUser;
+  PetscCall(VecCreate(o->layout->comm, force));
+  PetscCall(VecSetSizes(*force, 2 * o->layout->n + FreeBodiesOwn(o), PETSC_DETERMINE));
+  PetscCall(VecSetType(*force, VECSTANDARD));
+  if (!o->free->M) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, 3 * o->free->M, place));
+  PetscCall(VecGetArray(*place, &y));
+  for (PetscInt b = 0; b < o->layout->bodies; b++)
+    if (o->motion[b].free) PetscCall(PetscArraycpy(y + 3 * (o->motion[b].free - 1), o->motion[b].center, 2));
+  PetscCall(VecRestoreArray(*place, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void FreeBodiesLoads(Obstacles o, PetscScalar y[]) {
+  (void)PetscArraycpy(y + 2 * o->layout->n, o->load + 3 * o->free->first, FreeBodiesOwn(o));
+}
+
+void FreeBodiesRows(Obstacles o, PetscBool load, const PetscScalar x[], PetscScalar y[]) {
+  const Layout l = o->layout;
+  (void)PetscArrayzero(y + 2 * l->n, FreeBodiesOwn(o));
+  if (load) FreeBodiesLoads(o, y);
+  for (PetscInt b = l->own; b < l->end; b++) {
+    if (!o->motion[b].free) continue;
+    const BodyPose p = MotionPose(&o->motion[b], o->at);
+    const PetscScalar *q = x + FreeBodyAt(o, b);
+    PetscScalar *sum = y + FreeBodyAt(o, b);
+    for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
+      const PetscReal *F = x + 2 * (k - l->first), dx = o->X[2 * k] - p.center[0], dy = o->X[2 * k + 1] - p.center[1];
+      PetscScalar *u = y + 2 * (k - l->first);
+      u[0] += o->ratio[b] * (q[0] - q[2] * dy);
+      u[1] += o->ratio[b] * (q[1] + q[2] * dx);
+      sum[0] += F[0];
+      sum[1] += F[1];
+      sum[2] += dx * F[1] - dy * F[0];
+    }
+  }
+}
+
+void FreeBodySum(PetscInt n, const PetscReal X[], const PetscScalar F[], PetscReal sum[3]) {
+  (void)PetscArrayzero(sum, 3);
+  for (PetscInt k = 0; k < 2 * n; k += 2) {
+    sum[0] += F[k];
+    sum[1] += F[k + 1];
+    sum[2] += X[k] * F[k + 1] - X[k + 1] * F[k];
+  }
+}
+
+/* A force alike on all markers, and a turn about their mean. */
+void FreeBodyBalance(PetscInt n, const PetscReal X[], const PetscReal s[3], PetscScalar F[]) {
+  PetscReal mean[2] = {0, 0}, squares = 0, sum[3];
+  FreeBodySum(n, X, F, sum);
+  const PetscReal push[2] = {(s[0] - sum[0]) / n, (s[1] - sum[1]) / n};
+  for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += X[k] / n;
+  for (PetscInt k = 0; k < 2 * n; k++) squares += PetscSqr(X[k] - mean[k % 2]);
+  const PetscReal turn = (s[2] - sum[2] - n * (mean[0] * push[1] - mean[1] * push[0])) / squares;
+  for (PetscInt k = 0; k < 2 * n; k += 2) {
+    F[k] += push[0] - turn * (X[k + 1] - mean[1]);
+    F[k + 1] += push[1] + turn * (X[k] - mean[0]);
+  }
+}
+
+PetscErrorCode FreeBodiesBalance(Obstacles o, PetscScalar F[]) {
+  const Layout l = o->layout;
+  PetscReal *X;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * l->n, &X));
+  for (PetscInt b = l->own; b < l->end; b++) {
+    const PetscInt n = LayoutCount(l, b), at = 2 * LayoutOffset(l, b);
+    const BodyPose p = MotionPose(&o->motion[b], o->at);
+    if (!o->motion[b].free) continue;
+    const PetscReal *load = o->load + 3 * (o->motion[b].free - 1), s[] = {-load[0], -load[1], -load[2]};
+    for (PetscInt k = 0; k < 2 * n; k++) X[k] = o->X[2 * l->start[b] + k] - p.center[k % 2];
+    FreeBodyBalance(n, X, s, F + at);
+  }
+  PetscCall(PetscFree(X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal FreeBodiesSpeed(Obstacles o, const PetscScalar x[]) {
+  PetscReal speed = 0;
+  for (PetscInt b = o->layout->own; b < o->layout->end; b++) {
+    if (!o->motion[b].free) continue;
+    const PetscScalar *q = x + FreeBodyAt(o, b);
+    speed = PetscMax(speed, PetscHypotReal(q[0], q[1]) + PetscAbsReal(q[2]) * ObstacleRadius(o, b));
+  }
+  return speed;
+}
+
+PetscErrorCode FreeBodiesRates(Obstacles o, Vec force, PetscReal q[]) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(force, &x));
+  PetscCall(LayoutGather(o->free, 3, x + 2 * o->layout->n, q));
+  PetscCall(VecRestoreArrayRead(force, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A body's F turns with it to a new place; its sum stays. */
+static void FreeBodyTurn(Obstacles o, PetscInt b, Instant to, PetscScalar F[]) {
+  const PetscInt n = LayoutCount(o->layout, b);
+  PetscReal lost[2] = {0, 0};
+  for (PetscInt k = 0; k < 2 * n; k++) lost[k % 2] += F[k];
+  MotionTurn(&o->motion[b], o->at, to, n, F);
+  for (PetscInt k = 0; k < 2 * n; k++) lost[k % 2] -= F[k];
+  for (PetscInt k = 0; k < 2 * n; k++) F[k] += lost[k % 2] / n;
+}
+
+PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal a0, Vec place) {
+  PetscReal *q;
+  PetscScalar *y;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * o->free->M, &q));
+  PetscCall(FreeBodiesRates(o, force, q));
+  PetscCall(VecGetArray(place, &y));
+  for (PetscInt k = 0; k < 3 * o->free->M; k++) y[k] += q[k] / a0;
+  PetscCall(VecRestoreArray(place, &y));
+  PetscCall(PetscFree(q));
+  PetscCall(VecGetArray(force, &y));
+  for (PetscInt b = o->layout->own; b < o->layout->end; b++)
+    if (o->motion[b].turned && o->motion[b].free)
+      FreeBodyTurn(o, b, (Instant){.place = place}, y + 2 * LayoutOffset(o->layout, b));
+  PetscCall(VecRestoreArray(force, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

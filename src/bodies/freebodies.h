@@ -1,0 +1,38 @@
+/* Bodies that move as the fluid carries them (docs/obstacles.md, Free bodies). Three unknowns q a body, the velocity of
+   its center and its rotation, and three rows; R are the body's rigid motions at its markers,
+
+       u_inf(Y) + E u - C F - beta N N^T F - m R q = 0,      R^T F + load = 0,
+
+   m the viscosity around the body over nu, load the force and the torque on it from outside. A body has no mass. Its
+   place, center and angle, is integrated by the formula of the step, with q for the rate, and its markers follow from
+   it, so its shape never changes.
+
+   Unknowns and residuals of obstacles, and the force of a state, are arrays [2w + 3 own free]: q stands behind F, R^T F
+   + load behind the rows of the markers. A place is a vector that every rank has, [3 free]. */
+#pragma once
+#include "bodies/obstacles.h"
+
+/* FreeBodiesCreateVecs - for a state: the force, zero, and the places at time 0 (NULL where no body moves freely).
+   Collective. */
+PETSC_EXTERN PetscErrorCode FreeBodiesCreateVecs(Obstacles obstacles, Vec *force, Vec *place);
+
+/* FreeBodiesRows - y += m R q and = R^T F, with the load where it is wanted. FreeBodiesLoads - y = load alone, at the
+   bodies' numbers. Not collective. */
+PETSC_EXTERN void FreeBodiesRows(Obstacles obstacles, PetscBool load, const PetscScalar x[], PetscScalar y[]);
+PETSC_EXTERN void FreeBodiesLoads(Obstacles obstacles, PetscScalar y[]);
+
+/* FreeBodySum - sum[3] = R^T F of one body of n markers, X[2n] from its center. FreeBodyBalance - F += the rigid part
+   by which R^T F becomes s[3]. FreeBodiesBalance - the same of own bodies where they have been placed, by which R^T F
+   becomes minus the load, of F[2w]. Not collective. */
+PETSC_EXTERN void FreeBodySum(PetscInt n, const PetscReal X[], const PetscScalar F[], PetscReal sum[3]);
+PETSC_EXTERN void FreeBodyBalance(PetscInt n, const PetscReal X[], const PetscReal s[3], PetscScalar F[]);
+PETSC_EXTERN PetscErrorCode FreeBodiesBalance(Obstacles obstacles, PetscScalar F[]);
+
+/* FreeBodiesSpeed - the largest speed of a marker of own bodies that move with the q of such an array (length/time).
+   Not collective. */
+PETSC_EXTERN PetscReal FreeBodiesSpeed(Obstacles obstacles, const PetscScalar x[]);
+
+/* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += q/a0, and the force
+   turns with the bodies from where they have been placed. Collective. */
+PETSC_EXTERN PetscErrorCode FreeBodiesRates(Obstacles obstacles, Vec force, PetscReal q[]);
+PETSC_EXTERN PetscErrorCode FreeBodiesMove(Obstacles obstacles, Vec force, PetscReal a0, Vec place);

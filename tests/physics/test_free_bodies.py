@@ -1,0 +1,146 @@
+"""Bodies that the fluid carries: exact answers and dense boundary integrals in unbounded fluid, the speed of a disc in a
+channel, a body against the same one whose motion is given, bodies in and beside vesicles, ranks, restarts, fields."""
+
+import h5py
+import numpy as np
+import pytest
+from harness import REFERENCES, ROOT, run_petves
+from restarts import agree
+from test_obstacles import CHANNEL, PERIODIC
+
+EXACT = REFERENCES["free_bodies"]
+ALONE = "-vesicle_shape none -obstacle_free all -obstacle_shape posts"
+FREE = f"{ALONE} -domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 64,64"
+ONCE = "-coupled_ksp_rtol 1e-11 -time_step 1e-5 -time_end 1e-5"
+#: Two discs between walls, one of them pulled.
+PAIR = (
+    "-domain_box -2,2,-2,2 -domain_cells 48,48 -obstacle_radius .5,.4 -obstacle_center -.6,.3,.6,-.2 -flow_type shear"
+)
+PULL = "-obstacle_force 1,-2,0,0 -obstacle_torque 0,.5"
+RATES = ("velocity_x", "velocity_y", "rotation")
+
+
+def rates(series, body, row=-1):
+    """Velocity and rotation of a body."""
+    return np.array([series[f"obstacle_{name}_{body}"][row] for name in RATES])
+
+
+def ellipses(folder, *bodies):
+    """A file of ellipses (x, y, semi-axis along x, along y)."""
+    t = 2 * np.pi * np.arange(400) / 400
+    folder.mkdir(exist_ok=True)
+    curves = [np.column_stack([x + a * np.cos(t), y + b * np.sin(t)]) for x, y, a, b in bodies]
+    (folder / "curves.txt").write_text("\n".join("\n".join(f"{x:.17g} {y:.17g}" for x, y in c) + "\n" for c in curves))
+    return f"-obstacle_shape file -obstacle_file {folder / 'curves.txt'} -obstacle_free all"
+
+
+def balanced(series, bodies, loads=None):
+    """Whether the fluid's force and torque on each body are those from outside, turned, in all rows."""
+    for body in range(1, bodies + 1):
+        found = np.array([series[f"obstacle_{name}_{body}"] for name in ("force_x", "force_y", "torque")]).T
+        assert np.abs(found + (loads[body - 1] if loads else 0)).max() < 1e-12
+
+
+def test_a_disc_in_shear(tmp_path):
+    """It moves with the flow in its centre and turns at half the rate, exactly; inside the fluid turns with it."""
+    options = f"{FREE} {ONCE} -flow_type shear -obstacle_radius .7 -obstacle_center .3,.4"
+    series = run_petves(tmp_path, options).series
+    assert np.abs(rates(series, 1) - [0.4, 0, -0.5]).max() < 1e-10
+    balanced(series, 1)
+    with h5py.File(tmp_path / "run.h5") as file:
+        x, y, u = file["fluid/x"][:], file["fluid/y"][:], [file[f"fluid/{name}"][0] for name in "uv"]
+    inside = np.hypot(x - 0.3, y[:, None] - 0.4) < 0.6
+    assert inside.sum() > 50
+    assert np.abs(u[0] - (0.4 + 0.5 * (y[:, None] - 0.4)))[inside].max() < 1e-8
+    assert np.abs(u[1] + 0.5 * (x - 0.3))[inside].max() < 1e-8
+
+
+@pytest.mark.parametrize(
+    "name, options",
+    [("two", "-flow_type shear -obstacle_radius 1"), ("pulled", "-obstacle_radius 1,.5 -obstacle_force 0,-1,0,1")],
+)
+def test_two_discs_against_boundary_integrals(name, options, tmp_path):
+    series = run_petves(tmp_path, f"{FREE} {ONCE} {options} -obstacle_center 0,0,2.4,.5").series
+    for body in (1, 2):
+        assert np.abs(rates(series, body) - EXACT[name][body - 1]).max() < 1e-6
+
+
+@pytest.mark.parametrize("order, within", [(2, 1e-3), (3, 1e-4)])
+def test_jeffery_s_orbit(order, within, tmp_path):
+    """An ellipse 2:1 turns once in 5 pi, in 200 steps; twice the steps take the order's part of the error away."""
+    options = (
+        f"{FREE} {ellipses(tmp_path, (0, 0, 2, 1))} -flow_type shear -scheme_order {order} -time_end {5 * np.pi!r}"
+    )
+    off = []
+    for steps in (200, 400):
+        series = run_petves(
+            tmp_path / str(steps), f"{options} -time_step {5 * np.pi / steps!r} -output_every 99 -coupled_ksp_rtol 1e-9"
+        ).series
+        slowest = 0.2  # the rate at which it turns where the turn ends
+        off.append(abs(series["obstacle_angle_1"][-1] + 2 * np.pi) / slowest / (5 * np.pi))
+        balanced(series, 1)
+    assert off[0] < within and off[1] < off[0] / 2 ** (order - 0.2)
+
+
+def test_discs_that_pass(tmp_path):
+    """In shear, of third order in time; both end as far from the middle."""
+    options = f"{FREE} -flow_type shear -obstacle_radius 1 -obstacle_center -2,.5,2,-.5 -time_step .0125 -time_end 8"
+    series = run_petves(tmp_path, f"{options} -output_every 99").series
+    for sign, body in ((1, 1), (-1, 2)):
+        place = [series[f"obstacle_center_{d}_{body}"][-1] for d in "xy"]
+        assert place == pytest.approx(sign * np.array(EXACT["passing"]), abs=5e-5)
+
+
+def test_a_disc_settles_in_a_channel(tmp_path):
+    """Under a force, and under its weight, along a channel at no flux; the force is that of a disc that is moved."""
+    channel = f"{CHANNEL} -domain_cells 96,32 -flow_drive flux -obstacle_free all -obstacle_radius .1"
+    pulled = run_petves(tmp_path / "pulled", f"{channel} -obstacle_force 1,0").series
+    assert rates(pulled, 1)[0] * REFERENCES["obstacles"]["faxen"] == pytest.approx(1, abs=1e-4)
+    assert np.abs(rates(pulled, 1)[1:]).max() < 1e-8 and pulled["flux"][-1] == pytest.approx(0, abs=1e-9)
+    weight = 2 * np.pi * 0.1**2  # of the density 3 under a gravity of 1
+    heavy = run_petves(tmp_path / "heavy", f"{channel} -obstacle_density 3 -fluid_gravity 1,0").series
+    assert rates(heavy, 1)[0] == pytest.approx(weight * rates(pulled, 1)[0], rel=1e-8)
+    balanced(heavy, 1, [(weight, 0, 0)])
+
+
+@pytest.mark.parametrize("ranks, box", [(1, "wall"), (2, "wall"), (3, "wall"), (1, "channel"), (1, "periodic")])
+def test_a_body_whose_motion_is_given(ranks, box, tmp_path):
+    """Surfaces that move with the velocities of free bodies feel the same forces, marker by marker."""
+    sides = {"wall": "", "channel": "-domain_bc_x periodic", "periodic": f"{PERIODIC} -flow_type uniform"}[box]
+    options = (
+        f"{PAIR.replace('-flow_type shear', '') if box == 'periodic' else PAIR} {sides} {ONCE} -vesicle_shape none"
+    )
+    options += " -obstacle_shape posts"
+    free = run_petves(tmp_path / "free", f"{options} -obstacle_free all {PULL}", ranks=ranks)
+    balanced(free.series, 2, [(1, -2, 0), (0, 0, 0.5)])
+    q = [rates(free.series, body, 0) for body in (1, 2)]
+    velocity = ",".join(repr(x) for body in q for x in body[:2])
+    given = run_petves(
+        tmp_path / "given", f"{options} -obstacle_velocity {velocity} -obstacle_rotation {q[0][2]!r},{q[1][2]!r}"
+    )
+    with h5py.File(free.folder / "run.h5") as one, h5py.File(given.folder / "run.h5") as two:
+        assert np.abs(one["obstacle/force"][0] - two["obstacle/force"][0]).max() < 1e-8
+
+
+@pytest.mark.parametrize("case", EXACT["inclusion"])
+def test_an_inclusion(case, tmp_path):
+    """A disc in a vesicle that tank-treads in unbounded shear: angle, frequency, and the disc's rotation."""
+    radius, ratio = case.split(", ")
+    exact = EXACT["inclusion"][case]
+    options = f"-options_file {ROOT / 'runs' / 'inclusion.opts'} -output_dir {tmp_path} -output_every 99"
+    options += f" -obstacle_radius {radius} -vesicle_viscosity_ratio {ratio} -vesicle_angle {180 * exact[0]}"
+    series = run_petves(tmp_path, f"{options} -time_end 30").series
+    found = [series["inclination"][-1] / np.pi, series["frequency"][-1], rates(series, 1)[2]]
+    assert found == pytest.approx(exact, abs=2e-4)
+    assert series["coupled_its"][5:].max() <= 8
+    balanced(series, 1)
+
+
+@pytest.mark.parametrize("steps", ["", "-time_adapt error -time_adapt_tol 1e-4"])
+def test_ranks_and_restart(steps, tmp_path):
+    """An ellipse beside a vesicle and one in it: the same on three ranks; a restart has the same bits."""
+    options = f"{ellipses(tmp_path, (-0.55, 0.1, 0.16, 0.1), (0.5, -0.2, 0.3, 0.2))} {steps} -flow_type shear"
+    options += " -domain_box -1.5,1.5,-1.5,1.5 -domain_cells 96,96 -vesicle_center -.5,.1 -vesicle_semi_axes .3,.4"
+    options += " -vesicle_viscosity_ratio 3 -obstacle_force 1,0,0,-2 -time_step .02 -output_every .1 -output_overwrite"
+    columns = [f"obstacle_{name}_{body}" for name in ("center_y", "angle", *RATES) for body in (1, 2)]
+    agree(tmp_path, options, 0.2, 1, ("center_x", "inclination", "coupled_its", *columns), (3,))
