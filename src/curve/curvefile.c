@@ -1,5 +1,6 @@
-/* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve. */
+/* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve; a header "x,y" is skipped. */
 #include "curve/curve.h"
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
@@ -93,7 +94,8 @@ static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *point
   PetscFunctionBeginUser;
   line[strcspn(line, "\r\n")] = 0;
   if (*start == '#' && points->period) PetscCall(PointsReadNote(start, number, points));
-  if (*start == '#') PetscFunctionReturn(PETSC_SUCCESS);
+  if (*start == '#' || (number == 1 && tolower((unsigned char)*start) == 'x')) /* the header "x,y" of CSV */
+    PetscFunctionReturn(PETSC_SUCCESS);
   line[strcspn(line, "#")] = 0;
   const int n = PointsNumbers(line, 2, x);
   if (n == 0)

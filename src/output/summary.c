@@ -156,15 +156,6 @@ static void JsonPrintVersions(FILE *f) {
           release);
 }
 
-/* Print the model of the fluid, the Reynolds number (null: not known) and the largest CFL number of a step (0
-   without convection). */
-static void JsonPrintInertia(FILE *f, Scene scene, PetscReal cfl_max) {
-  static const char *const names[] = {"unsteady", "none", "unsteady", "convective"};
-  fprintf(f, "  \"inertia\": \"%s\",\n", names[scene->fluid.inertia]);
-  fprintf(f, scene->reynolds >= 0 ? "  \"reynolds\": %.6g,\n" : "  \"reynolds\": null,\n", (double)scene->reynolds);
-  fprintf(f, "  \"cfl_max\": %.6g,\n", (double)cfl_max);
-}
-
 /* Print the least and the largest ratio of viscosities, unless all are 1. */
 static void JsonPrintRatios(FILE *f, Scene scene) {
   PetscReal low = PETSC_MAX_REAL, high = 0;
@@ -222,8 +213,10 @@ static void JsonPrintOrigin(FILE *f) {
 }
 
 static PetscErrorCode JsonPrint(FILE *f, const void *what) {
+  static const char *const models[] = {"unsteady", "none", "unsteady", "convective"}; /* of InertiaType */
   const Summary *s = what;
   const Record *r = s->record;
+  const Scene scene = s->scheme->scene;
   struct rusage usage;
   int ranks;
   (void)MPI_Comm_size(s->folder->comm, &ranks);
@@ -239,12 +232,15 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   (void)getrusage(RUSAGE_SELF, &usage);
   fprintf(f, "},\n  \"memory_mib_rank_0\": %.1f,\n", (double)usage.ru_maxrss / 1024);
   fprintf(f, "  \"markers\": %d,\n  \"cells\": [%d, %d],\n  \"ranks\": %d,\n", (int)s->scheme->membrane->layout->M,
-          (int)s->scheme->scene->fluid.cells[0], (int)s->scheme->scene->fluid.cells[1], ranks);
+          (int)scene->fluid.cells[0], (int)scene->fluid.cells[1], ranks);
   fprintf(f, "  \"written\": {\"frames\": %d, \"bytes\": %.0f, \"bytes_run_h5\": %.0f},\n", (int)s->frames, s->bytes,
           s->bytes_h5);
-  JsonPrintRatios(f, s->scheme->scene);
-  JsonPrintInertia(f, s->scheme->scene, r->cfl_max);
-  JsonPrintWarnings(f, s->scheme->scene->warning, &s->scheme->warnings);
+  JsonPrintRatios(f, scene);
+  fprintf(f, "  \"inertia\": \"%s\",\n", models[scene->fluid.inertia]);
+  /* null: not known; of the steps without convection the CFL number is 0 */
+  fprintf(f, scene->reynolds >= 0 ? "  \"reynolds\": %.6g,\n" : "  \"reynolds\": null,\n", (double)scene->reynolds);
+  fprintf(f, "  \"cfl_max\": %.6g,\n", (double)r->cfl_max);
+  JsonPrintWarnings(f, scene->warning, &s->scheme->warnings);
   JsonPrintOrigin(f);
   JsonPrintVersions(f);
   fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());

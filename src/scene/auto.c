@@ -242,20 +242,16 @@ static const Setting settings[AUTO_SETTINGS] = {
   {"-domain_box", AUTO_DOMAIN, .suggest = SceneSuggestBox},
   {"-domain_cells", AUTO_DOMAIN, .suggest = SceneSuggestCells}};
 
-static PetscErrorCode AutoCheckWanted(Scene s) {
+PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
   const SceneRule rules[] = {
     {s->scheme.wanted < 1e-4 || s->scheme.wanted > 0.1,
      "-scheme_auto {-scheme_auto}: outside of what was measured; allowed: 0, or 1e-4 to 0.1"},
     {SceneIsProjection(s),
      "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"}};
-  return REFUSE(s, rules);
-}
-/* clang-format on */
-
-PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
+  /* clang-format on */
   PetscFunctionBeginUser;
   if (s->scheme.wanted == 0 || (stage == AUTO_STEPS && !s->shape.vesicles)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AutoCheckWanted(s));
+  PetscCall(REFUSE(s, rules));
   s->coupling.ksp_rtol = CalibratedRow(s)->ksp_rtol;
   for (int k = 0; k < AUTO_SETTINGS; k++) {
     const Setting *own = &settings[k];

@@ -296,6 +296,7 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   const PetscBool free = FluidSpecIsFree(f), coupled = !strcmp(s->scheme.type, "coupled"),
                   exact = s->coupling.near_field == NEAR_EXACT, contrast = vesicles && SceneHasContrast(s),
                   quasi = f->inertia == INERTIA_AUTO || f->inertia == INERTIA_NONE;
+  PetscReal period[2];
   const SceneRule unbounded[] = {
     {free && f->bc[1] != BC_FREE,
      "-domain_bc_x free: with a boundary in y; allowed: free in x and y, or in neither"},
@@ -325,8 +326,9 @@ PetscErrorCode SceneCheckBodies(Scene s) {
      "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: not with -delta_type {-delta_type} and this -coupling_near_field, whose sums are of cbs54 and exact; allowed: 1, or -delta_type cbs54 -coupling_near_field exact"}};
   /* clang-format on */
   PetscFunctionBeginUser;
+  FluidSpecPeriods(f, period);
   PetscCall(REFUSE(s, unbounded));
-  PetscCall(FlowCheckDivergence(s->comm, &s->flow, f->box, FluidSpecCellSize(f), s->time.end));
+  PetscCall(FlowCheck(s->comm, &s->flow, f->box, period, FluidSpecCellSize(f), s->time.end));
   PetscCall(SceneCheckList(s, "-vesicle_density_difference", s->gravity.density.n, 1, entries, what, "a vesicle"));
   PetscCall(REFUSE(s, forces));
   if (vesicles)

@@ -82,8 +82,28 @@ PetscReal FlowShearRate(const Flow *flow) {
 #define ROUNDOFF 1e-11 /* of a velocity, which differences show too */
 #define LATER 0.618    /* of the end time: where formulas are looked at too, for a flow that begins at rest */
 
-PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h,
-                                   PetscReal end) {
+/* Write the message of formulas that go through the walls of a channel, or differ by more than `least` a period on. */
+static void FlowCheckSides(const Flow *flow, const PetscReal box[4], const PetscReal period[2], PetscReal t,
+                           PetscReal least, char message[PETVES_MAX_MESSAGE]) {
+  for (int k = 0; k < 8 * POINTS && !*message; k++) {
+    const int d = k % 2, c = k / 2 % 2, side = k / 4 % 2; /* across the sides; the component */
+    PetscReal at[2][2], u[2][2];
+    for (int s = 0; s < 2; s++) {
+      at[s][d] = box[2 * d + s];
+      at[s][1 - d] = box[2 - 2 * d] + (box[3 - 2 * d] - box[2 - 2 * d]) * ((PetscReal)(k / 8) + 0.5) / POINTS;
+      FlowVelocity(flow, t, at[s][0], at[s][1], u[s]);
+    }
+    const PetscBool repeats = period[d] > 0, channel = period[1 - d] > 0;
+    const PetscReal right = repeats ? u[1 - side][c] : channel && c == d ? 0 : u[side][c];
+    if (PetscAbsReal(u[side][c] - right) > least)
+      (void)snprintf(message, PETVES_MAX_MESSAGE, "-flow_%c: %.3g at (%.3g, %.3g), time %.3g; allowed: %.3g, as %s",
+                     "uv"[c], (double)u[side][c], (double)at[side][0], (double)at[side][1], (double)t, (double)right,
+                     repeats ? "a period of the box on" : "nothing passes the walls of a channel");
+  }
+}
+
+PetscErrorCode FlowCheck(MPI_Comm comm, const Flow *flow, const PetscReal box[4], const PetscReal period[2],
+                         PetscReal h, PetscReal end) {
   const PetscReal step = STEP * h;
   char message[PETVES_MAX_MESSAGE] = "";
   PetscReal divergence = 0, where[3] = {0, 0, 0}, gradient = 0, speed = 0; /* the largest values */
@@ -115,6 +135,8 @@ PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscR
                             "here up to %.1g, a thousandth of its largest gradient",
                             FlowName(flow), (double)divergence, (double)where[0], (double)where[1], (double)where[2],
                             (double)(TOLERATED * gradient)));
+  for (PetscInt k = 0; k < times && flow->type == FLOW_FORMULA; k++)
+    FlowCheckSides(flow, box, period, (PetscReal)k * LATER * end, TOLERATED * speed, message);
   PetscCall(AgreeMessage(comm, message));
   PetvesCheck(!*message, comm, "%s", message);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -45,10 +45,11 @@ PETSC_EXTERN PetscErrorCode FlowVelocities(const Flow *flow, PetscReal t, PetscI
 /* FlowShearRate - the fastest rate at which the flow shears a vesicle (1/time); 0 where it is not known. */
 PETSC_EXTERN PetscReal FlowShearRate(const Flow *flow);
 
-/* FlowCheckDivergence - that a custom flow has no divergence at time 0, and one of formulas none later before the end
-   either, by differences at points all over the box of cells of size h. Collective; stops with the user's message. */
-PETSC_EXTERN PetscErrorCode FlowCheckDivergence(MPI_Comm comm, const Flow *flow, const PetscReal box[4], PetscReal h,
-                                                PetscReal end);
+/* FlowCheck - that a custom flow has no divergence at time 0, and one of formulas none later before the end either, by
+   differences at points all over the box of cells of size h; that formulas have the periods of the box (0: none) and
+   stay within the walls of a channel. Collective; stops with the user's message. */
+PETSC_EXTERN PetscErrorCode FlowCheck(MPI_Comm comm, const Flow *flow, const PetscReal box[4],
+                                      const PetscReal period[2], PetscReal h, PetscReal end);
 
 /* FlowPressureGradient - grad p_inf[2] at any point (uniform for the flows offered) for viscosity nu. */
 PETSC_EXTERN void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]);

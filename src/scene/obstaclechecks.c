@@ -41,16 +41,17 @@ static PetscErrorCode ObstacleCheckPlace(Scene scene, PetscInt b) {
   for (int d = 0; d < 2; d++) {
     const PetscBool walls = f->bc[d] == BC_WALL, along = wall < 0 || wall / 2 != d;
     const PetscReal low = around[2 * d], high = around[2 * d + 1], beyond = least * h * (1 - 1e-12);
-    const PetscReal room[2] = {low - f->box[2 * d], f->box[2 * d + 1] - high};
+    const PetscReal below = wall == 2 * d ? beyond : low - f->box[2 * d], above = wall == 2 * d + 1 ? beyond : f->box[2 * d + 1] - high;
+    const PetscReal room = PetscMin(below, above);
     const SceneRule rules[] = {
       {along && type != CURVE_SPANNING && high - low < LEAST_ACROSS * h * (1 - 1e-2),
        "-obstacle_shape: obstacle %.0f is %.3g cells across in %c; allowed: at least %.0f, so finer -domain_cells or a larger one", {b + 1, (high - low) / h, "xy"[d], LEAST_ACROSS}},
       {high - low >= f->box[2 * d + 1] - f->box[2 * d],
        "-obstacle_shape: obstacle %.0f is %g long in %c; allowed: one that fits into -domain_box", {b + 1, high - low, "xy"[d]}},
-      {walls && wall != 2 * d && room[0] < beyond,
-       "-obstacle_shape: obstacle %.0f comes to %.3g cells of a wall in %c; allowed: at least %g", {b + 1, room[0] / h, "xy"[d], least}},
-      {walls && wall != 2 * d + 1 && room[1] < beyond,
-       "-obstacle_shape: obstacle %.0f comes to %.3g cells of a wall in %c; allowed: at least %g", {b + 1, room[1] / h, "xy"[d], least}}};
+      {walls && room < beyond && type == CURVE_CLOSED && own->shape == OBSTACLE_FILE,
+       "-obstacle_file {-obstacle_file}: closed curve %.0f comes to %.3g cells of a wall in %c; allowed: at least %g, or the line # open before its points: a bump on the wall", {b + 1, room / h, "xy"[d], least}},
+      {walls && room < beyond,
+       "-obstacle_shape: obstacle %.0f comes to %.3g cells of a wall in %c; allowed: at least %g", {b + 1, room / h, "xy"[d], least}}};
     PetscCall(REFUSE(scene, rules));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,11 +20,6 @@ static PetscInt KindFastOdd(PetscInt M) {
   return M;
 }
 
-/* Rate of the flow over the membrane's own, of a vesicle of radius R0; 0 where either is zero. */
-static PetscReal KindChi(Scene scene, PetscReal R0, PetscReal bending) {
-  return bending == 0 ? 0 : FlowShearRate(&scene->flow) * scene->fluid.nu * PetscPowRealInt(R0, 3) / bending;
-}
-
 #define STRONG 100 /* chi from which on membranes wrinkle */
 #define THINNEST 8 /* times the markers of a round vesicle, at most */
 
@@ -34,7 +29,8 @@ static PetscReal KindChi(Scene scene, PetscReal R0, PetscReal bending) {
 static PetscReal KindMarkersByShape(Scene scene, const Kind *kind) {
   const PetscReal length = kind->length, V = 4 * PETSC_PI * kind->area / PetscSqr(length),
                   thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
-  const PetscReal strong = KindChi(scene, length / (2 * PETSC_PI), kind->bending) >= STRONG * (1 - 1e-6) ? 1.5 : 1;
+  const PetscReal rate = FlowShearRate(&scene->flow) * scene->fluid.nu * PetscPowRealInt(length / (2 * PETSC_PI), 3);
+  const PetscReal strong = kind->bending > 0 && rate >= STRONG * (1 - 1e-6) * kind->bending ? 1.5 : 1;
   return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
 }
 

@@ -192,14 +192,16 @@ def test_other_units_take_the_same_iterations(kind, walls, tmp_path):
 
 
 def test_curve_file_as_programs_write_it(tmp_path):
-    """The last point is the first but for rounding, and a comment is as long as it likes: the markers of the plain file."""
+    """The last point is the first but for rounding, comments of any length, a header of CSV: the markers of the plain file."""
     t = np.linspace(0, 2 * np.pi, 101)
     points = np.column_stack([0.5 * np.cos(t), 0.8 * np.sin(t)])
     assert np.any(points[-1] != points[0])
     np.savetxt(tmp_path / "plain.txt", points[:-1], fmt="%.17g")
     np.savetxt(tmp_path / "closed.txt", points, fmt="%.17g", header="9 " * 2000)
-    plain, closed = (
+    np.savetxt(tmp_path / "table.txt", points[:-1], fmt="%.17g", delimiter=",", header="x,y", comments="")
+    plain, closed, table = (
         markers(run_petves(tmp_path / name, f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path / name}.txt"))
-        for name in ("plain", "closed")
+        for name in ("plain", "closed", "table")
     )
     np.testing.assert_array_equal(plain, closed)
+    np.testing.assert_array_equal(plain, table)

@@ -39,6 +39,7 @@ CURVES = {
     "long line": [CIRCLE[0], " " * 2000 + "0.1 0.2 0.3", *CIRCLE[1:]],
     "open": ["# open", *CIRCLE],
     "bump": ["# open", *bump(0.5)],
+    "closed bump": bump(0.5),
     "low bump": ["# open", *bump(0.05)],
     "rising bump": ["# open", "# velocity 0 1", *bump(0.5)],
     "sliding bump": ["# open", "# velocity 1 0", *bump(0.5)],

@@ -57,7 +57,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "TITLE": escape(f"petves: {shown(run.folder.resolve().name)}"),
         "WORDS": words,
         "NUMBERS": rows,
-        "NOTE": f"{membranes}The colours of the fluid span the range of each time, without few cells that have much more.",
+        "NOTE": f"{membranes}The colours of the fluid span the range of each time, but for a few cells that have much more.",
         "PLOTS": _plots(run),
         "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in run.options().items())),
         "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
