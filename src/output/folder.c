@@ -100,13 +100,6 @@ static PetscMPIInt LockFile(const char path[], int *file) {
   }
 }
 
-/* Write into the lock who holds it, for runs that are refused. On a full disk it stays empty, which does no harm. */
-static void LockWriteHolder(int file) {
-  char host[128] = "";
-  (void)gethostname(host, sizeof(host) - 1);
-  if (!ftruncate(file, 0)) (void)!dprintf(file, "process %ld on %s\n", (long)getpid(), host);
-}
-
 /* Read who holds the lock, after a moment in which a new holder writes it; false when the holder has ended meanwhile.
  */
 static PetscBool LockReadHolder(const char path[], char who[], size_t length) {
@@ -129,7 +122,11 @@ static PetscErrorCode FolderLock(Folder *folder) {
   FolderPath(folder, LOCK, path);
   if (!folder->rank) error = LockFile(path, &folder->lock);
   while (error == EWOULDBLOCK && !LockReadHolder(path, who, sizeof(who))) error = LockFile(path, &folder->lock);
-  if (!folder->rank && !error) LockWriteHolder(folder->lock);
+  if (!folder->rank && !error) {
+    /* who holds the lock, for runs that are refused; on a full disk it stays empty, which does no harm */
+    (void)gethostname(who, sizeof(who) - 1);
+    if (!ftruncate(folder->lock, 0)) (void)!dprintf(folder->lock, "process %ld on %s\n", (long)getpid(), who);
+  }
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, folder->comm));
   PetscCallMPI(MPI_Bcast(who, sizeof(who), MPI_CHAR, 0, folder->comm));
   if (error == ENOENT || error == ENOTDIR) PetscFunctionReturn(PETSC_SUCCESS); /* there is no folder yet */

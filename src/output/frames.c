@@ -53,7 +53,10 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   for (PetscInt v = 0; v < o->layout->bodies; v++) kind[v] = o->kind[v].type;
   H5Put(f, "obstacle_kind", H5_INT, o->layout->bodies, kind);
   H5Put(f, "obstacle_start", H5_INT, o->layout->bodies + 1, o->layout->start);
-  if (!SceneObstaclesMove(scene)) H5PutRows(f, "/obstacle/markers", H5_REAL, o->layout->M, 2, X);
+  if (!SceneObstaclesMove(scene)) {
+    H5PutRows(f, "/obstacle/markers", H5_REAL, o->layout->M, 2, X);
+    H5PutUnit(f, "/obstacle/markers", "length");
+  }
   PetscCall(FramesPutLines(f, o->layout, o->kind, "/obstacle/lines", "/obstacle/number"));
   PetscCall(PetscFree2(X, kind));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -114,14 +114,6 @@ static void PrintObstacles(FILE *f, PetscInt t, Obstacles o, PetscBool moving, P
   fprintf(f, "</Grid>\n");
 }
 
-static void PrintTracers(FILE *f, PetscInt t, PetscInt n, PetscBool wrapped) {
-  const XdmfSlab points = {wrapped ? "/tracers/wrapped" : "/tracers/points", 8, t, n, 0, 2, 2};
-  fprintf(f, "<Grid Name=\"tracers\" GridType=\"Uniform\"><Topology TopologyType=\"Polyvertex\" ");
-  fprintf(f, "NumberOfElements=\"%d\"/>\n<Geometry GeometryType=\"XY\">\n", (int)n);
-  PrintSlab(f, "", &points);
-  fprintf(f, "</Geometry></Grid>\n");
-}
-
 static void PrintFrame(const Xdmf *x, FILE *f, PetscInt t, PetscReal time) {
   const Scheme s = x->scheme;
   const Obstacles solids = s->coupling->bodies->obstacles;
@@ -131,7 +123,13 @@ static void PrintFrame(const Xdmf *x, FILE *f, PetscInt t, PetscReal time) {
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
   if (s->membrane->layout->M) PrintVesicles(f, t, s->membrane->layout, wrapped);
   if (solids) PrintObstacles(f, t, solids, SceneObstaclesMove(&s->scene->obstacles), wrapped);
-  if (x->tracers) PrintTracers(f, t, x->tracers, wrapped);
+  if (x->tracers) {
+    const XdmfSlab points = {wrapped ? "/tracers/wrapped" : "/tracers/points", 8, t, x->tracers, 0, 2, 2};
+    fprintf(f, "<Grid Name=\"tracers\" GridType=\"Uniform\"><Topology TopologyType=\"Polyvertex\" ");
+    fprintf(f, "NumberOfElements=\"%d\"/>\n<Geometry GeometryType=\"XY\">\n", (int)x->tracers);
+    PrintSlab(f, "", &points);
+    fprintf(f, "</Geometry></Grid>\n");
+  }
   fprintf(f, "</Grid>\n");
 }
 

@@ -117,6 +117,7 @@ def test_files_have_the_curves(tmp_path):
     assert data.obstacles.units == "length" and data.obstacle_torque_2.units == "length^4/time^2"
     assert list(np.bincount(data.obstacle)[1:]) == [len(points) for points in curves], "obstacles 1 and 2"
     with h5py.File(tmp_path / "run.h5") as file:
+        assert file["obstacle/markers"].attrs["units"] == b"length"
         lines, at = file["obstacle/lines"][:], 0
         for points, first in zip(curves, (0, len(curves[0]))):  # a polyline of VTK, which closes
             assert list(lines[at : at + 2]) == [2, len(points) + 1] and lines[at + 2 + len(points)] == first
