@@ -16,9 +16,9 @@
 typedef struct {
   PetscInt M;
   PetscReal *edge;             /* [M] d of the edges */
-  PetscReal *products;         /* [M + CIRCULANT_PADDING] (D D^T)_kl as a function of k - l */
-  PetscReal *e, *a, *z, *work; /* [2M + CIRCULANT_PADDING] e, a, z, work */
-  PetscReal *twice;            /* [4M + CIRCULANT_PADDING] an argument of D two times */
+  PetscReal *products;         /* [M] (D D^T)_kl as a function of k - l */
+  PetscReal *e, *a, *z, *work; /* [2M] e, a, z, work */
+  PetscReal *twice;            /* [4M] an argument of D two times */
   PetscReal *r, *CC;           /* [M + 1], [(M + 1)^2] */
 } Fit;
 
@@ -37,7 +37,6 @@ static void FitMultiply(const Fit *f, const PetscReal d[], int each, PetscBool t
                         PetscReal out[]) {
   const PetscInt width = each * f->M;
   for (PetscInt i = 0; i < width; i++) f->twice[i] = f->twice[width + i] = x[i];
-  for (PetscInt i = 2 * width; i < 2 * width + CIRCULANT_PADDING; i++) f->twice[i] = 0;
   CirculantConvolve(f->M, each, transposed, d, f->twice, out);
 }
 
@@ -90,7 +89,7 @@ static PetscErrorCode FitLeastChange(const Fit *f, PetscReal X[], PetscBool *sol
 }
 
 static PetscErrorCode FitCreate(PetscInt M, PetscBool spectral, Fit *f) {
-  const PetscInt room = 2 * M + CIRCULANT_PADDING;
+  const PetscInt room = 2 * M;
   PetscFunctionBeginUser;
   f->M = M;
   PetscCall(PetscCalloc6(M, &f->edge, room, &f->products, room, &f->e, room, &f->a, room, &f->z, room, &f->work));

@@ -55,13 +55,12 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->hat = fftw_alloc_complex((size_t)n);
   s->line = fftw_alloc_complex((size_t)n);
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
-  PetscCall(PetscCalloc3(4 * n + CIRCULANT_PADDING, &s->twice, 2 * n + CIRCULANT_PADDING, &s->sum, n + 2, &s->round));
+  PetscCall(PetscCalloc3(4 * n, &s->twice, 2 * n, &s->sum, n + 2, &s->round));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
   }
-  for (int k = 0; k < KEPT; k++)
-    PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n + CIRCULANT_PADDING, &s->last[k].value));
+  for (int k = 0; k < KEPT; k++) PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n, &s->last[k].value));
   for (int t = 0; t < TURNS; t++) {
     PetscCall(PetscMalloc1(n, &s->turn[t]));
     s->phi[t] = NAN;
