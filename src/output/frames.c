@@ -112,6 +112,7 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
                                 {"/vesicle/velocity", M, 2, .unit = "length/time"},
                                 {"/vesicle/tension", M, 1, .unit = "length^3/time^2"},
                                 {"/obstacle/force", W, 2, .unit = "length^3/time^2"},
+                                {"/vesicle/stretch", s->membrane->law != LAW_INEXTENSIBLE ? M : 0, 1, .unit = "1"},
                                 {"/obstacle/markers", moving, 2, .unit = "length"},
                                 {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2, .unit = "length"},
                                 {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2, .unit = "length"},
@@ -175,6 +176,10 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
     if (!part.n) continue;
     PetscCall(StateShow(s, (StatePartName)name, f->all));
     if (name == STATE_SOLIDS) ObstaclesOrder(o, f->all, f->all);
+    AppendedSet(file, k++, f->all);
+  }
+  if (s->membrane->law != LAW_INEXTENSIBLE) {
+    PetscCall(StateStretch(s, f->all));
     AppendedSet(file, k++, f->all);
   }
   if (moving) {

@@ -28,18 +28,28 @@ PetscErrorCode StateGather(const StatePart *p, PetscReal values[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StateShow(Scheme s, StatePartName name, PetscReal values[]) {
-  const StatePart part = StatePartOf(s, &s->state, name);
+PetscErrorCode StateStretch(Scheme s, PetscReal stretch[]) {
   const Membrane m = s->membrane;
   PetscReal *X, *tau;
   PetscFunctionBeginUser;
-  PetscCall(StateGather(&part, values));
-  if (name != STATE_TENSION || m->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(2 * m->layout->M, &X, 2 * m->layout->M, &tau));
   PetscCall(LayoutGatherVec(m->layout, s->state.X, X));
   MembraneTangents(m, 0, m->layout->bodies, X, tau);
-  for (PetscInt k = 0; k < m->layout->M; k++) values[k] *= PetscHypotReal(tau[2 * k], tau[2 * k + 1]);
+  for (PetscInt k = 0; k < m->layout->M; k++) stretch[k] = PetscHypotReal(tau[2 * k], tau[2 * k + 1]);
   PetscCall(PetscFree2(X, tau));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StateShow(Scheme s, StatePartName name, PetscReal values[]) {
+  const StatePart part = StatePartOf(s, &s->state, name);
+  PetscReal *stretch;
+  PetscFunctionBeginUser;
+  PetscCall(StateGather(&part, values));
+  if (name != STATE_TENSION || s->membrane->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(part.n, &stretch));
+  PetscCall(StateStretch(s, stretch));
+  for (PetscInt k = 0; k < part.n; k++) values[k] *= stretch[k];
+  PetscCall(PetscFree(stretch));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -29,8 +29,10 @@ PETSC_EXTERN PetscErrorCode StateGather(const StatePart *part, PetscReal values[
 PETSC_EXTERN PetscErrorCode StateScatter(const StatePart *part, const PetscReal values[]);
 
 /* StateShow - StateGather of the scheme's state for frames and callers, who see the tension where STATE_TENSION is the
-   law's unknown, the tension over the stretch (bodies/law.h). Collective. */
+   law's unknown, the tension over the stretch (bodies/law.h). StateStretch - the stretch [M] of the edges. Collective.
+ */
 PETSC_EXTERN PetscErrorCode StateShow(Scheme scheme, StatePartName name, PetscReal values[]);
+PETSC_EXTERN PetscErrorCode StateStretch(Scheme scheme, PetscReal stretch[]);
 
 /* GatherRows - all[rows][each] on rank 0 of every rank's rows own[][each] of a field of the grid. ScatterRows - every
    rank gets its rows of rank 0's. Collective. */

@@ -82,14 +82,19 @@ static void PrintLines(FILE *f, const char kind[], Layout l, PetscInt closed) {
   fprintf(f, "</Attribute>\n<Geometry GeometryType=\"XY\">\n");
 }
 
-static void PrintVesicles(FILE *f, PetscInt t, Layout l, PetscBool wrapped) {
+static void PrintVesicles(FILE *f, PetscInt t, Membrane m, PetscBool wrapped) {
+  const Layout l = m->layout;
   const XdmfSlab markers = {wrapped ? "/vesicle/wrapped" : "/vesicle/markers", 8, t, l->M, 0, 2, 2};
-  const XdmfSlab tension = {"/vesicle/tension", 8, t, l->M, 0, 1, 0};
+  const XdmfSlab edges[] = {{"/vesicle/tension", 8, t, l->M, 0, 1, 0}, {"/vesicle/stretch", 8, t, l->M, 0, 1, 0}};
   PrintLines(f, "vesicle", l, l->bodies);
   PrintSlab(f, "", &markers);
-  fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
-  PrintSlab(f, "", &tension);
-  fprintf(f, "</Attribute></Grid>\n");
+  fprintf(f, "</Geometry>\n");
+  for (int k = 0; k < (m->law != LAW_INEXTENSIBLE ? 2 : 1); k++) {
+    fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Node\">\n", k ? "stretch" : "tension");
+    PrintSlab(f, "", &edges[k]);
+    fprintf(f, "</Attribute>");
+  }
+  fprintf(f, "</Grid>\n");
 }
 
 /* Obstacles that rest have one entry of markers, no series. */
@@ -121,7 +126,7 @@ static void PrintFrame(const Xdmf *x, FILE *f, PetscInt t, PetscReal time) {
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);
-  if (s->membrane->layout->M) PrintVesicles(f, t, s->membrane->layout, wrapped);
+  if (s->membrane->layout->M) PrintVesicles(f, t, s->membrane, wrapped);
   if (solids) PrintObstacles(f, t, solids, SceneObstaclesMove(&s->scene->obstacles), wrapped);
   if (x->tracers) {
     const XdmfSlab points = {wrapped ? "/tracers/wrapped" : "/tracers/points", 8, t, x->tracers, 0, 2, 2};

@@ -151,6 +151,7 @@ def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
     stretch = abs(np.fft.ifft(wave * np.fft.fft(z)))  # the radius is 1
     assert run.series["energy_stretching"][-1] == pytest.approx(10 * math.pi * np.mean((stretch - 1) ** 2), rel=1e-10)
     assert tension == pytest.approx(10 * (stretch - 1), abs=2e-4)
+    assert run.saved("vesicle/stretch", "run.h5")[-1] == pytest.approx(stretch, abs=1e-9)
 
 
 @pytest.mark.parametrize("moment", CAPSULES["moments"])
