@@ -120,6 +120,7 @@ static PetscErrorCode SceneCheckVesicleLists(Scene scene) {
   PetscCall(SceneCheckKinds(scene, "-vesicle_reduced_area", own->reduced_area.n, 1));
   PetscCall(SceneCheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
   PetscCall(SceneCheckKinds(scene, "-membrane_stretching", scene->membrane.stretching.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-membrane_memory", scene->membrane.memory.n, 1));
   for (PetscInt k = 0; k < own->reduced_area.n; k++)
     PetvesCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
                 scene->comm, "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9",

@@ -9,6 +9,7 @@ from studies.common.engine import Results
 from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
 from studies.gallery.capsule import SCENE as CAPSULE
+from studies.gallery.cells import SCENE as CELLS
 from studies.gallery.constriction import SCENE as CONSTRICTION
 from studies.gallery.couette import SCENE as COUETTE
 from studies.gallery.doublet import SCENE as DOUBLET
@@ -40,6 +41,7 @@ SCENES = (
     REYNOLDS,
     CAPILLARY,
     CAPSULE,
+    CELLS,
     DOUBLET,
 )
 TEMPLATE = Path(__file__).with_name("page.md")
