@@ -1,7 +1,5 @@
 #include "markers/dipolerows.h"
 
-#define AT_ONCE 4 /* rows that are summed at once */
-
 /* Row j of a field: this rank's, up to DIPOLE_BELOW rows below them or DIPOLE_ABOVE above them. */
 static PetscScalar *DipoleRow(DipoleRows d, Field f, PetscInt j) {
   return d->field[f] + (j + DIPOLE_BELOW) * d->grid->n[0];
@@ -44,28 +42,20 @@ static void DipoleRowMeans(DipoleRows d, StencilRows list, const PetscReal T[]) 
     }
 }
 
-/* Replace the sources of `count` rows by b along x, with zero mean or, between walls, zero on the wall. A sum
-   waits for the sum before it, so that several rows are summed at once. */
-static inline void DipoleRowSums(const int count, DipoleRows d, PetscInt j) {
+/* Replace the sources of a row by b along x, with zero mean or, between walls, zero on the wall. */
+static void DipoleRowSum(DipoleRows d, PetscInt j) {
   const Grid g = d->grid;
   const PetscInt n = g->n[0];
-  PetscReal mean[AT_ONCE], b[AT_ONCE] = {0}, sum[AT_ONCE] = {0};
-  PetscScalar *row[AT_ONCE];
-  for (int q = 0; q < count; q++) {
-    mean[q] = d->mean[(j + q + g->first + g->n[1]) % g->n[1]];
-    row[q] = DipoleRow(d, FIELD_P, j + q);
+  const PetscReal mean = d->mean[(j + g->first + g->n[1]) % g->n[1]];
+  PetscScalar *row = DipoleRow(d, FIELD_P, j);
+  PetscReal b = 0, sum = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    b += g->h * (mean - row[i]);
+    row[i] = b;
+    sum += b;
   }
-  for (PetscInt i = 0; i < n; i++)
-    for (int q = 0; q < count; q++) {
-      b[q] += g->h * (mean[q] - row[q][i]);
-      row[q][i] = b[q];
-      sum[q] += b[q];
-    }
-  for (int q = 0; q < count; q++) {
-    sum[q] /= (PetscReal)n;
-    for (PetscInt i = 0; i < n && !g->wall[0]; i++) row[q][i] -= sum[q];
-    if (g->wall[0]) row[q][n - 1] = 0;
-  }
+  for (PetscInt i = 0; i < n && !g->wall[0]; i++) row[i] -= sum / (PetscReal)n;
+  if (g->wall[0]) row[n - 1] = 0;
 }
 
 /* Replace the mean sources of the rows by b along y, zero at a wall or else with zero mean. */
@@ -103,8 +93,7 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, StencilRows list, const PetscReal T[]
       for (PetscInt i = 0; i < g->n[0]; i++) row[i] = 0;
       StencilRowSpread(list, (Field)f, j, 1, T, row);
     }
-  for (j = d->window[0]; j + AT_ONCE <= d->window[1]; j += AT_ONCE) DipoleRowSums(AT_ONCE, d, j);
-  for (; j < d->window[1]; j++) DipoleRowSums(1, d, j);
+  for (j = d->window[0]; j < d->window[1]; j++) DipoleRowSum(d, j);
   DipoleRowSumMeans(g, d->mean);
   for (j = 0; j < g->n[1]; j++) {
     d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);

@@ -103,12 +103,8 @@ static inline void RowAddEntry(StencilRows r, PetscInt columns, const RowEntry *
 
 void StencilRowSpread(StencilRows r, Field f, PetscInt j, PetscReal alpha, const PetscScalar F[], PetscScalar row[]) {
   const PetscInt *start = r->start[f] + j + r->below, columns = r->grid->columns[f];
-  const RowEntry *e = r->entry[f] + start[0], *end = r->entry[f] + start[1], *half = e + (end - e) / 2;
-  /* Neighbouring stencils overlap, and a sum would wait for the sum before it. So two stencils far apart take turns. */
-  for (const RowEntry *other = half; other < end; other++) {
-    if (e < half) RowAddEntry(r, columns, e++, alpha, F, row);
-    RowAddEntry(r, columns, other, alpha, F, row);
-  }
+  for (const RowEntry *e = r->entry[f] + start[0]; e < r->entry[f] + start[1]; e++)
+    RowAddEntry(r, columns, e, alpha, F, row);
 }
 
 void StencilRowInterpolate(StencilRows r, Field f, PetscInt j, const PetscScalar row[], PetscScalar U[]) {

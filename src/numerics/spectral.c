@@ -3,24 +3,15 @@
 #include <fftw3.h>
 
 #define TURNS 3 /* angles that a step shifts the states before it by */
-#define KEPT 6  /* derivatives that are kept */
-
-/* A derivative of X[2n]; power 0: none yet. */
-typedef struct {
-  int power;
-  PetscReal *X, *value;
-} Derivative;
-
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward;
   PetscReal *derivative[3];           /* weights [n] of powers 1, 2, 4 */
-  Derivative last[KEPT];              /* the last derivatives */
   PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
   PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
   PetscReal *twice, *sum;             /* work arrays of the sums */
-  int next, replaced;                 /* numbers of the shift and of the derivative that are replaced next */
+  int next;                           /* number of the shift that is replaced next */
 };
 
 /* Set the weights of the derivatives, which are those of the trigonometric cardinal function,
@@ -60,7 +51,6 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
   }
-  for (int k = 0; k < KEPT; k++) PetscCall(PetscMalloc2(2 * n, &s->last[k].X, 2 * n, &s->last[k].value));
   for (int t = 0; t < TURNS; t++) {
     PetscCall(PetscMalloc1(n, &s->turn[t]));
     s->phi[t] = NAN;
@@ -78,7 +68,6 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   fftw_free(s->hat);
   fftw_free(s->line);
   for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
-  for (int k = 0; k < KEPT; k++) PetscCall(PetscFree2(s->last[k].X, s->last[k].value));
   for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
   PetscCall(PetscFree3(s->twice, s->sum, s->round));
   PetscCall(PetscFree(*spectral));
@@ -92,24 +81,10 @@ static void SpectralRepeat(Spectral s, int each, const PetscScalar X[]) {
     for (PetscInt k = c; k < n; k += each) s->twice[k] = s->twice[n + k] = X[k] - X[c];
 }
 
-/* d^power X/dk^power, of those that are kept or new. */
-static const PetscReal *SpectralFound(Spectral s, int power, const PetscScalar X[]) {
-  const size_t bytes = 2 * (size_t)s->n * sizeof(PetscReal);
-  Derivative *d = s->last;
-  for (int k = 0; k < KEPT; k++)
-    if (d[k].power == power && !memcmp(d[k].X, X, bytes)) return d[k].value;
-  d += s->replaced;
-  s->replaced = (s->replaced + 1) % KEPT;
-  memcpy(d->X, X, bytes);
-  d->power = power;
-  SpectralRepeat(s, 2, X);
-  CirculantConvolve(s->n, 2, PETSC_FALSE, s->derivative[power / 2], s->twice, d->value);
-  return d->value;
-}
-
 void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScalar X[], PetscScalar Y[]) {
-  const PetscReal *found = SpectralFound(s, power, X);
-  for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * found[k];
+  SpectralRepeat(s, 2, X);
+  CirculantConvolve(s->n, 2, PETSC_FALSE, s->derivative[power / 2], s->twice, s->sum);
+  for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * s->sum[k];
 }
 
 PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {

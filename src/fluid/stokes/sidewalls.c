@@ -7,7 +7,7 @@
 
    and A from chi_{-1} = 0, chi_{-2} = chi_0. The sum of g over all modes is made once for each distance. */
 #include "fluid/stokes/sidewalls.h"
-#include <petscblaslapack.h>
+#include "numerics/blas.h"
 
 #define NEGLIGIBLE 1e-19 /* of the largest entry */
 
@@ -175,16 +175,6 @@ PetscErrorCode SideWallsSet(SideWalls s, PetscReal alpha, PetscReal nu) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Entries begin to end - 1 of y = A x of size n, columns contiguous. */
-static void SideWallsProduct(PetscInt n, PetscInt begin, PetscInt end, const PetscReal A[], const PetscReal x[],
-                             PetscReal *restrict y) {
-  for (PetscInt a = begin; a < end; a++) y[a] = 0;
-  for (PetscInt b = 0; b < n; b++) {
-    const PetscReal *restrict column = A + b * n, f = x[b];
-    for (PetscInt a = begin; a < end; a++) y[a] += f * column[a];
-  }
-}
-
 /* Sum the arrays of both walls over the ranks. Each entry is zero on all ranks but one, so that all ranks get the same
    bits. */
 static PetscErrorCode Share(SideWalls s, PetscReal faces[]) {
@@ -213,7 +203,9 @@ PetscErrorCode SideWallsForces(SideWalls s, PetscReal nu) {
       const PetscInt m = n - 1 - j;
       x[j] = RowFactor(s, j) / 4 * (s->v[0][j] + across * s->v[1][j] + along * (s->v[0][m] + across * s->v[1][m]));
     }
-    SideWallsProduct(half, begin, end, s->inverse[q], x, y);
+    PetscCall(PetscArrayzero(y, half));
+    PetscCall(
+        DenseMultAdd(PETSC_TRUE, half, end - begin, 1, s->inverse[q] + begin * half, x, y + begin)); /* symmetric */
     for (PetscInt j = begin; j < end; j++) {
       const PetscInt m = n - 1 - j;
       const PetscReal d = -c * y[j] / RowFactor(s, j);

@@ -1,5 +1,4 @@
 #include "fluid/transforms/rowtransform.h"
-#include "base/lanes.h"
 
 /* One real Fourier transform of length n between real[n] and complex[n/2 + 1], twisted or not. */
 static PetscErrorCode FourierCreate(PetscInt n, PetscBool twisted, double *real, double *modes, Fourier *f) {
@@ -123,24 +122,9 @@ static void SineBackward(RowTransform t, PetscScalar x[]) {
   memcpy(x, t->rest, (size_t)t->n * sizeof(double));
 }
 
-/* A row of zeros needs no transform: forces of a membrane are zero in most rows. Looked at by whole vectors. */
-static PetscBool IsZero(PetscInt n, const PetscScalar x[]) {
-  PetscInt i = 0;
-  for (; i + 4 * LANES <= n; i += 4 * LANES) {
-    PetscInt64 other = 0;
-    for (PetscInt k = i; k < i + 4 * LANES; k++) other |= x[k] != 0;
-    if (other) return PETSC_FALSE;
-  }
-  for (; i < n; i++)
-    if (x[i] != 0) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
 void RowTransformForward(RowTransform t, const PetscScalar x[]) {
   const PetscInt n = t->n;
-  if (IsZero(n, x))
-    memset(t->modes, 0, (size_t)t->width * sizeof(double));
-  else if (t->base)
+  if (t->base)
     SineForward(t, x);
   else if (t->sign != 0)
     HalfSampleForward(t, x);
