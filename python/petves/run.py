@@ -64,7 +64,7 @@ class Run:
         Markers of each obstacle (length), counter-clockwise around a solid, clockwise around fluid in one; the solid is on
         the left of curves that are not closed. Where they move, those of the last saved time.
     obstacle_markers : ndarray, shape (T, W, 2)
-        The same at each saved time where obstacles move (-obstacle_moving); else T = 0. Not wrapped, as vesicles' are not.
+        The same at each saved time where obstacles move; else T = 0. Not wrapped, as vesicles' are not.
     obstacle_force : ndarray, shape (T, W, 2)
         Force of the fluid on the markers of all obstacles, one obstacle after another (length^3/time^2).
     obstacle_kinds : list of str

@@ -136,6 +136,15 @@ def test_an_inclusion(case, tmp_path):
     balanced(series, 1)
 
 
+def test_a_disc_falls_beside_a_vesicle(tmp_path):
+    """runs/falling.opts shows what its header says."""
+    row = run_petves(tmp_path, f"-options_file {ROOT / 'runs' / 'falling.opts'} -output_dir {tmp_path}").series
+    names = [f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")] + ["center_x", "center_y", "inclination"]
+    exact = [0.4243, -1.1268, -0.5707, -0.4828, 0.9549, 0.8198]
+    assert [row[name][-1] for name in names] == pytest.approx(exact, abs=2e-4)
+    assert row["coupled_its"][5:].max() <= 4
+
+
 @pytest.mark.parametrize("steps", ["", "-time_adapt error -time_adapt_tol 1e-4"])
 def test_ranks_and_restart(steps, tmp_path):
     """An ellipse beside a vesicle and one in it: the same on three ranks; a restart has the same bits."""

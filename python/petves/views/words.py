@@ -47,6 +47,7 @@ def _solids(run: Run, o: dict[str, str]) -> str:
     names = {"closed": "closed", "open": "on a wall", "spanning": "across a period"}
     kinds = " or ".join(dict.fromkeys(names[kind] for kind in run.obstacle_kinds))
     moving = " They move and turn as prescribed." if o.get("obstacle_moving") == "true" else ""
+    moving = " The fluid carries them." if o.get("obstacle_free") == "all" else moving
     kept = {"flux": " The flux through the box is kept.", "pressure": " The mean pressure gradient is kept."}
     driven = kept[o.get("flow_drive", "pressure")] if run.periods[0] else ""
     return f"Solid bodies: {len(run.obstacles)}, {kinds}.{moving}{driven}"
