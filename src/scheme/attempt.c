@@ -123,33 +123,48 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt; free bodies by the same formula. */
-static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, const BDF *b) {
+/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt. */
+static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
-  if (n->place) {
-    PetscCall(HistorySum(b->order, b->history, 1 / b->a0, STATES(s, place), n->place));
-    PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, b->a0, n->place));
-  }
   if (n->p)
     PetscCall(SchemeMeasureDivergence(s, n->w, NULL));
   else
     s->report.div_max = s->report.measures.divergence;
   if (!CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeMarkerVelocity(s, d->V, n->sigma, d->P));
-  PetscCall(VecWAXPY(n->X, 1 / b->a0, d->P, d->Xhat));
+  PetscCall(VecWAXPY(n->X, 1 / a0, d->P, d->Xhat));
   PetscCall(VecCopy(d->P, n->U));
   PetscCall(CouplingTread(s->coupling, 1, n->X, n->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the forces of the step, which are spread at X*, and the jump do to a sheared channel. */
+/* Free bodies by the same formula. */
+static PetscErrorCode MoveBodies(Scheme s, Coupled *d, const BDF *b) {
+  PetscFunctionBeginUser;
+  PetscCall(HistorySum(b->order, b->history, 1 / b->a0, STATES(s, place), d->next.place));
+  PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, d->next.solid, b->a0, d->next.place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the forces of the step, which are spread at X*, and the jump do to a sheared channel. d->known is used for the
+   forces. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
+  const Bodies bodies = s->coupling->bodies;
   const State *n = &d->next;
+  const PetscScalar *solid;
+  PetscScalar *F;
   PetscFunctionBeginUser;
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingStepForce(s->coupling, n->X, d->Xstar, n->sigma, d->Y));
-  PetscCall(StressMeasure(s, n->w, n->p, d->Y, n->X, n->U));
+  PetscCall(CouplingStepForce(s->coupling, n->X, d->Xstar, n->sigma, d->known));
+  if (n->place) {
+    PetscCall(VecGetArray(d->known, &F));
+    PetscCall(VecGetArrayRead(n->solid, &solid));
+    PetscCall(PetscArraycpy(F + BodiesFirstObstacle(bodies), solid, BodiesObstacleNumbers(bodies)));
+    PetscCall(VecRestoreArrayRead(n->solid, &solid));
+    PetscCall(VecRestoreArray(d->known, &F));
+  }
+  PetscCall(StressMeasure(s, n->w, n->p, d->known, n->X, n->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -285,8 +300,9 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   PetscCall(InitialGuess(s, d));
   PetscCall(Solve(s, d));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MoveMarkers(s, d, &b));
+  PetscCall(MoveMarkers(s, d, b.a0));
   PetscCall(MeasureStress(s, d));
+  if (d->place) PetscCall(MoveBodies(s, d, &b));
   PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,8 +2,8 @@
 
 PetscBool StressApplies(Scheme s) {
   const Grid g = s->fluid->grid;
-  return s->scene->flow.type == FLOW_SHEAR && s->scene->flow.rate != 0 && CouplingHasMembrane(s->coupling) &&
-                 !g->free && !g->wall[0] && g->wall[1]
+  return s->scene->flow.type == FLOW_SHEAR && s->scene->flow.rate != 0 &&
+                 (CouplingHasMembrane(s->coupling) || s->state.place) && !g->free && !g->wall[0] && g->wall[1]
              ? PETSC_TRUE
              : PETSC_FALSE;
 }
@@ -45,10 +45,10 @@ static PetscErrorCode WallStress(Scheme s, Vec w, Vec p, PetscReal *shear, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SUM of force times place over the box, xx, yy and xy: y from the middle; x along each vesicle, so that forces between
+/* SUM of force times place over the box, xx, yy and xy: y from the middle; x along each body, so that forces between
    vesicles over the seam are where they act. */
 static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
-  const Layout l = s->membrane->layout;
+  const Layout l = s->coupling->bodies->layout;
   const Grid g = s->fluid->grid;
   const PetscReal *at = s->coupling->markers->X + 2 * l->first, middle = 0.5 * (g->lo[1] + g->hi[1]);
   const PetscScalar *a, *x;
@@ -74,7 +74,7 @@ static PetscErrorCode Stresslets(Scheme s, Vec F, Vec X, PetscReal sum[3]) {
 /* SUM of force times what its stencil's first moment across the channel falls short of, of u and of v: the near field's
    own stress at the walls, as the fluid on the grid does not feel all of a force that stands next to a wall. */
 static PetscErrorCode Shortfall(Scheme s, Vec F, PetscReal sum[2]) {
-  const Layout l = s->membrane->layout;
+  const Layout l = s->coupling->bodies->layout;
   const PetscScalar *a;
   PetscFunctionBeginUser;
   sum[0] = sum[1] = 0;

@@ -1,13 +1,15 @@
-/* The stress that membranes add to a sheared channel with walls in y, periodic in x (docs/suspensions.md, Stress). It
-   is measured twice, at the walls and from the membranes' forces; the sums cross ranks. */
+/* The stress that membranes and free bodies add to a sheared channel with walls in y, periodic in x
+   (docs/suspensions.md, Stress). It is measured twice, at the walls and from the membranes' forces; the sums cross
+   ranks. */
 #pragma once
 #include "scheme/stepcommon.h"
 
-/* StressApplies - whether the scene is a sheared channel with vesicles. Not collective. */
+/* StressApplies - whether the scene is a sheared channel with vesicles or free bodies. Not
+   collective. */
 PETSC_EXTERN PetscBool StressApplies(Scheme scheme);
 
 /* StressMeasure - fill in report.stress. The stress at the walls is that of velocity w and pressure p (NULL: from
-   report.measures). The membranes' stress is that of F, minus their force times ds (length^3/time^2; marker vector), at
-   the markers X with velocity U where the coupling has been placed. Both agree to rounding in fluid without inertia.
-   NaN in other scenes. Collective. */
+   report.measures). The bodies' stress is that of F, minus their force times ds (length^3/time^2; marker vector of
+   all), the vesicles' at the markers X with velocity U where the coupling has been placed. Both agree to rounding in
+   fluid without inertia. NaN in other scenes. Collective. */
 PETSC_EXTERN PetscErrorCode StressMeasure(Scheme scheme, Vec w, Vec p, Vec F, Vec X, Vec U);

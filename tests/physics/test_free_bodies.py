@@ -136,10 +136,30 @@ def test_an_inclusion(case, tmp_path):
     balanced(series, 1)
 
 
+SHEARED = "-domain_box 0,4,0,4 -domain_bc_x periodic -flow_type shear -obstacle_shape posts -obstacle_free all"
+
+
+def test_stress_of_a_sheared_channel(tmp_path):
+    """A dilute suspension of discs: 1 + 2 phi. With a vesicle and bodies near walls the same from walls and forces."""
+    options = f"{SHEARED} -vesicle_shape none -domain_cells 64,64 -obstacle_radius .2 -obstacle_center 2,2 {ONCE}"
+    dilute = run_petves(tmp_path / "dilute", options).series["viscosity"][-1]
+    assert (dilute - 1) / (np.pi * 0.2**2 / 16) == pytest.approx(2, abs=0.03)
+    options = f"{SHEARED} -domain_cells 32,32 -obstacle_radius .5,.4 -obstacle_center .8,.6,3.2,2.9 -vesicle_center 2,2"
+    options += " -vesicle_area .7 -vesicle_viscosity_ratio 3 -coupled_ksp_rtol 1e-10 -time_step .02 -time_end .1"
+    series = run_petves(tmp_path / "dense", options, ranks=2).series
+    assert series["viscosity"][-1] > 1.2
+    for name in ("viscosity", "normal_stress"):
+        np.testing.assert_allclose(series[f"{name}_wall"], series[name], rtol=1e-9)
+
+
 def test_a_disc_falls_beside_a_vesicle(tmp_path):
     """runs/falling.opts shows what its header says."""
     row = run_petves(tmp_path, f"-options_file {ROOT / 'runs' / 'falling.opts'} -output_dir {tmp_path}").series
-    names = [f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")] + ["center_x", "center_y", "inclination"]
+    names = [f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")] + [
+        "center_x",
+        "center_y",
+        "inclination",
+    ]
     exact = [0.4243, -1.1268, -0.5707, -0.4828, 0.9549, 0.8198]
     assert [row[name][-1] for name in names] == pytest.approx(exact, abs=2e-4)
     assert row["coupled_its"][5:].max() <= 4
