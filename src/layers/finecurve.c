@@ -70,11 +70,13 @@ static PetscReal DistanceBelow(const PetscReal x[2], const FineCurve *c, PetscRe
   return least;
 }
 
-/* P/f of the points in use. */
-static PetscErrorCode FineCurveWeigh(FineCurve *a) {
+/* The points of a with a point of b in the window, and their rows of P/f. */
+static PetscErrorCode FineCurveUse(FineCurve *a, const FineCurve *b, PetscReal window) {
   const PetscInt Q = a->n * a->f;
   PetscReal *weight;
   PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < Q; p++)
+    if (DistanceBelow(a->x + 2 * p, b, window) < window) a->used[a->count++] = p;
   PetscCall(PetscMalloc1(a->n * a->count, &a->P));
   if (a->kind->type != CURVE_OPEN) {
     for (PetscInt k = 0; k < a->n; k++)
@@ -88,16 +90,6 @@ static PetscErrorCode FineCurveWeigh(FineCurve *a) {
     for (PetscInt k = 0; k < a->n; k++) a->P[k * a->count + p] = weight[k] / a->f;
   }
   PetscCall(PetscFree(weight));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The points of a with a point of b in the window, and their rows of P. */
-static PetscErrorCode FineCurveUse(FineCurve *a, const FineCurve *b, PetscReal window) {
-  const PetscInt Q = a->n * a->f;
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < Q; p++)
-    if (DistanceBelow(a->x + 2 * p, b, window) < window) a->used[a->count++] = p;
-  PetscCall(FineCurveWeigh(a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,16 +21,6 @@ PetscReal LatticeConstant(void) {
   return (EULER_GAMMA + PetscLogReal(PETSC_PI) + 1) / (4 * PETSC_PI);
 }
 
-/* (g1 - s g2)(j) and g2(j) for j = 0 .. n. */
-static void Along(PetscReal mu, PetscReal s, PetscInt n, PetscReal along[], PetscReal square[]) {
-  const PetscReal S = PetscSinhReal(mu), C = PetscCoshReal(mu);
-  for (PetscInt j = 0; j <= n; j++) {
-    const PetscReal e = PetscExpReal(-mu * j);
-    square[j] = e * (j * S + C) / (4 * S * S * S);
-    along[j] = e / (2 * S) - s * square[j];
-  }
-}
-
 /* uu and vu of offsets 0 .. reach: arrays [i][j], i fastest in memory order [j * (reach + 1) + i]. */
 static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   const PetscInt nodes = reach + 40, n = reach + 1; /* reach + 20 give the same to rounding */
@@ -42,12 +32,16 @@ static PetscErrorCode Quadrant(PetscInt reach, PetscReal uu[], PetscReal vu[]) {
   for (PetscInt k = 0; k < n * n; k++) uu[k] = LatticeConstant();
   for (PetscInt q = 0; q < nodes; q++) {
     const PetscReal half = PetscSinReal(0.5 * theta[q]), s = 4 * half * half, mu = 2 * PetscAsinhReal(half);
-    const PetscReal w = weight[q] / PETSC_PI;
+    const PetscReal w = weight[q] / PETSC_PI, S = PetscSinhReal(mu), C = PetscCoshReal(mu);
     for (PetscInt i = 0; i < n; i++) {
       cosine[i] = PetscCosReal(i * theta[q]);
       sine[i] = PetscSinReal((i + 0.5) * theta[q]);
     }
-    Along(mu, s, n, along, square);
+    for (PetscInt j = 0; j <= n; j++) { /* (g1 - s g2)(j) and g2(j) */
+      const PetscReal e = PetscExpReal(-mu * j);
+      square[j] = e * (j * S + C) / (4 * S * S * S);
+      along[j] = e / (2 * S) - s * square[j];
+    }
     for (PetscInt j = 0; j < n; j++) {
       const PetscReal across = w * 2 * half * (square[j + 1] - square[j]), level = 1 / (4 * theta[q]);
       for (PetscInt i = 0; i < n; i++) {

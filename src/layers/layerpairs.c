@@ -38,21 +38,16 @@ PetscErrorCode LayerPairsDestroy(LayerPairs *pairs) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bounds, and the stencils of velocities. */
-static void PlaceVelocities(LayerPairs f) {
+PetscErrorCode LayerPairsPlace(LayerPairs f) {
   const Markers m = f->set->markers;
-  for (PetscInt v = 0; v < m->layout->bodies; v++)
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < m->layout->bodies && f->owner; v++)
     f->bounds[v] = NearBoundsOf(LayoutCount(m->layout, v), m->X + 2 * m->layout->start[v]);
-  for (PetscInt k = 0; k < m->layout->M && !m->grid->free; k++) {
+  for (PetscInt k = 0; k < m->layout->M && f->owner && !m->grid->free; k++) {
     for (int c = 0; c < 2; c++) StencilPad(&m->plain[2 * k + c], &f->stencil[2 * k + c]);
     StencilUnwrap(m->grid, m->X + 2 * k, &f->stencil[2 * k]);
   }
-}
-
-PetscErrorCode LayerPairsPlace(LayerPairs f) {
-  PetscFunctionBeginUser;
-  if (f->owner) PlaceVelocities(f);
-  if (f->kernel->place && !f->set->markers->grid->free) f->kernel->place(f);
+  if (f->kernel->place && !m->grid->free) f->kernel->place(f);
   if (f->image) PetscCall(WallImagePlace(f->image, f->stencil, f->from.stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

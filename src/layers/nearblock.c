@@ -30,16 +30,6 @@ static void ChunkDistances(LayerPairs f, PairChunk *c) {
   if (c->half && c->i == c->j) c->part[0] = 0.5; /* whole, as K of the marker itself, which has the same logarithm */
 }
 
-/* No marker of the other body is within the stencils' reach; with a box part images are looked for one by one. */
-static PetscBool ChunkIsAlone(LayerPairs f, const PairChunk *c) {
-  const NearBounds *bounds = &f->bounds[c->column];
-  PetscReal own[2], r2 = 0;
-  ChunkPlace(f, c, own);
-  for (int dir = 0; dir < 2; dir++)
-    r2 += PetscSqr(PetscMax(0, PetscMax(bounds->low[dir] - own[dir], own[dir] - bounds->high[dir])));
-  return !f->set->box && r2 > c->reach * c->reach;
-}
-
 /* Four of the chunk's pairs to the marker's x and y row. */
 static inline void Interlace(const PairChunk *c, PetscInt k, PetscReal x[], PetscReal y[]) {
   const int xy = c->back ? 3 : 2, yx = 5 - xy;
@@ -72,10 +62,14 @@ static void ChunkWrite(const PairChunk *c, const NearBlock *b, size_t at, PetscI
 
 static void FillRow(LayerPairs f, const NearBlock *b, const NearRow *r, const DipoleFaces *faces, PairChunk *c,
                     NearStore *s) {
+  const NearBounds *box = &f->bounds[b->column];
+  PetscReal own[2], off2 = 0;
   c->i = r->row;
-  c->plain = f->image &&
-             WallsAreFar(f->set->markers->grid, f->set->markers->X + 2 * r->row, &f->bounds[b->column], c->off);
-  c->alone = ChunkIsAlone(f, c);
+  c->plain = f->image && WallsAreFar(f->set->markers->grid, f->set->markers->X + 2 * r->row, box, c->off);
+  ChunkPlace(f, c, own);
+  for (int dir = 0; dir < 2; dir++)
+    off2 += PetscSqr(PetscMax(0, PetscMax(box->low[dir] - own[dir], own[dir] - box->high[dir])));
+  c->alone = !f->set->box && off2 > c->reach * c->reach; /* with a box part images are looked for one by one */
   for (int dir = 0; dir < 2 && f->from.normal; dir++) c->N[dir] = f->from.normal[2 * r->row + dir] - (Lanes){0};
   if (c->plain && c->shared[0]) {
     const PetscReal over = 1 / f->set->markers->grid->h;

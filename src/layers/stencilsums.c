@@ -20,16 +20,9 @@ void OffsetTableTurn(OffsetTable *t) {
     for (PetscInt i = 0; i < n; i++) t->value[OFFSET_VV][j * n + i] = t->value[OFFSET_UU][i * n + j];
 }
 
-/* SUM w_i (i - SUM w_j j)^4 of the weights a, b. */
-static inline PetscReal FourthMoment(Lanes a, Lanes b) {
-  const Lanes low = {0, 1, 2, 3}, high = low + LANES;
-  const PetscReal place = LanesSum(a * low + b * high);
-  const Lanes x = (low - place) * (low - place), y = (high - place) * (high - place);
-  return LanesSum(a * x * x + b * y * y);
-}
-
 /* Six weights between six zeros on either side. */
 void StencilPad(const Stencil *s, PaddedStencil *p) {
+  const Lanes low = {0, 1, 2, 3}, high = low + LANES;
   for (int dir = 0; dir < 2; dir++) {
     PetscReal *w = p->weight[dir];
     Lanes weight[2] = {{0}, {0}};
@@ -37,7 +30,9 @@ void StencilPad(const Stencil *s, PaddedStencil *p) {
     for (int i = 0; i < 3 * KERNEL_MAX_POINTS - LANES; i += LANES) LanesPut((Lanes){0}, w + i);
     LanesPut((Lanes){0}, w + 3 * KERNEL_MAX_POINTS - LANES);
     for (int q = 0; q < 2; q++) LanesPut(weight[q], w + KERNEL_MAX_POINTS + LANES * q);
-    p->fourth[dir] = FourthMoment(weight[0], weight[1]);
+    const PetscReal place = LanesSum(weight[0] * low + weight[1] * high);
+    const Lanes x = (low - place) * (low - place), y = (high - place) * (high - place);
+    p->fourth[dir] = LanesSum(weight[0] * x * x + weight[1] * y * y);
     p->first[dir] = s->first[dir];
     p->n[dir] = s->n[dir];
   }

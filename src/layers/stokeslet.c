@@ -158,23 +158,18 @@ static const ImageNumbers lattice[3] = {
        210, 70}}},
 };
 
-/* t from n is n from t the other way round: a and b are exchanged, and x turned. */
-static void ImageExchange(const ImageForm *from, ImageForm *to) {
-  static const int mirror[IMAGE_MONOMIALS] = {0, 2, 1, 3, 5, 4, 7, 6, 9, 8, 12, 11, 10, 14, 13, 18, 17, 16, 15};
-  for (int m = 0; m < IMAGE_ORDERS; m++)
-    for (int k = 0; k < image_monomials[m]; k++) to->c[m][k] = -from->c[m][mirror[k]];
-}
-
 /* Components along the wall have the moments along it that they have along themselves, and across it those across
    themselves; normal ones the other way round, and these have no other moments next to the wall. */
 static void StokesletImageMake(const Kernel *kernel, ImageKernel *image) {
+  static const int mirror[IMAGE_MONOMIALS] = {0, 2, 1, 3, 5, 4, 7, 6, 9, 8, 12, 11, 10, 14, 13, 18, 17, 16, 15};
   static const PetscBool tangential[2][IMAGE_PARTS] = {{[IMAGE_TT] = PETSC_TRUE, [IMAGE_TN] = PETSC_TRUE},
                                                        {[IMAGE_TT] = PETSC_TRUE, [IMAGE_NT] = PETSC_TRUE}};
   const ImageMoments t = ImageMomentsOf(kernel->along), n = ImageMomentsOf(kernel->across);
   ImageForm form[IMAGE_PARTS] = {{{{0}}}};
   *image = (ImageKernel){.moment = {t, n}};
   for (int part = 0; part < IMAGE_TN; part++) ImageFormAdd(1, &lattice[part], over, &form[part]);
-  ImageExchange(&form[IMAGE_NT], &form[IMAGE_TN]);
+  for (int m = 0; m < IMAGE_ORDERS; m++) /* t from n is n from t with a and b exchanged, and x turned */
+    for (int k = 0; k < image_monomials[m]; k++) form[IMAGE_TN].c[m][k] = -form[IMAGE_NT].c[m][mirror[k]];
   for (int part = 0; part < IMAGE_PARTS; part++) {
     const PetscBool to = tangential[0][part], from = tangential[1][part];
     for (int end = 0; end < 2; end++) {

@@ -16,12 +16,6 @@ static void WallImageHalf(WallImage m, int wall, PetscInt i, PetscInt j, PetscRe
   }
 }
 
-/* Whether stencils of a pair are summed. */
-static PetscBool ImageIsNear(PetscReal x, PetscReal a, PetscReal b) {
-  const PetscReal reach = PetscMin(a, b) < FOLD_SCALED ? IMAGE_CELLS : IMAGE_OFF;
-  return x * x + PetscSqr(a + b) < reach * reach;
-}
-
 /* One wall's part, added. Stencils that are scaled near the wall take s s' of the half-space's mobility K + image -
    C_free - C_image only: the rest comes on top. */
 static void WallImageAddOne(WallImage m, int wall, PetscInt i, PetscInt j, const PetscReal d[2], const PetscReal L[],
@@ -31,7 +25,8 @@ static void WallImageAddOne(WallImage m, int wall, PetscInt i, PetscInt j, const
   const PetscReal at[3] = {d[1 - wall / 2] / m->markers->grid->h, m->y[wall][i], m->y[wall][j]};
   const Lanes x = at[0] - (Lanes){0}, a = at[1] - (Lanes){0}, b = at[2] - (Lanes){0};
   const PetscReal scale[2] = {e->scale, m->source ? 1 : f->scale}, across = m->form.moment[1].second;
-  const PetscBool near = ImageIsNear(at[0], at[1], at[2]);
+  const PetscReal reach = PetscMin(at[1], at[2]) < FOLD_SCALED ? IMAGE_CELLS : IMAGE_OFF; /* stencils are summed */
+  const PetscBool near = at[0] * at[0] + PetscSqr(at[1] + at[2]) < reach * reach;
   const PetscBool scaled = scale[0] < 1 || scale[1] < 1;
   Lanes exact[PAIR_PARTS] = {{0}}, far[PAIR_PARTS] = {{0}};
   PetscReal free[PAIR_PARTS] = {0}, part[PAIR_PARTS];

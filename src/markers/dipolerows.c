@@ -58,35 +58,19 @@ static void DipoleRowSum(DipoleRows d, PetscInt j) {
   if (g->wall[0]) row[n - 1] = 0;
 }
 
-/* Replace the mean sources of the rows by b along y, zero at a wall or else with zero mean. */
-static void DipoleRowSumMeans(const Grid g, PetscScalar mean[]) {
-  PetscReal v = 0, sum = 0;
-  for (PetscInt j = 0; j < g->n[1]; j++) {
-    v -= g->h * mean[j];
-    mean[j] = v;
-    sum += v;
-  }
-  for (PetscInt j = 0; j < g->n[1] && !g->wall[1]; j++) mean[j] -= sum / (PetscReal)g->n[1];
-}
-
-/* Set the window. Rows of the window before that are not in this one become zero, because rows next to them are added
-   to. */
-static void DipoleRowsSetWindow(DipoleRows d, const PetscInt window[2]) {
-  for (PetscInt j = d->window[0]; j < d->window[1]; j++)
-    for (int f = 0; f < 3 && (j < window[0] || j >= window[1]); f++)
-      (void)PetscArrayzero(DipoleRow(d, (Field)f, j), d->grid->n[0]);
-  for (int c = 0; c < 2; c++) d->window[c] = window[c];
-}
-
 PetscErrorCode DipoleRowsSet(DipoleRows d, StencilRows list, const PetscReal T[], PetscBool own,
                              const PetscReal profile[], const PetscReal mean[2]) {
   const Grid g = d->grid;
+  PetscReal v = 0, sum = 0;
   PetscInt j, window[2];
   PetscFunctionBeginUser;
   d->own = own;
   DipoleRowMeans(d, list, T);
   DipoleListWindow(list, window);
-  DipoleRowsSetWindow(d, window);
+  for (j = d->window[0]; j < d->window[1]; j++) /* rows next to the window are added to */
+    for (int f = 0; f < 3 && (j < window[0] || j >= window[1]); f++)
+      PetscCall(PetscArrayzero(DipoleRow(d, (Field)f, j), g->n[0]));
+  PetscCall(PetscArraycpy(d->window, window, 2));
   for (j = d->window[0]; j < d->window[1]; j++)
     for (int f = own ? FIELD_U : FIELD_P; f <= FIELD_P; f++) {
       PetscScalar *row = DipoleRow(d, (Field)f, j);
@@ -94,10 +78,14 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, StencilRows list, const PetscReal T[]
       StencilRowSpread(list, (Field)f, j, 1, T, row);
     }
   for (j = d->window[0]; j < d->window[1]; j++) DipoleRowSum(d, j);
-  DipoleRowSumMeans(g, d->mean);
+  for (j = 0; j < g->n[1]; j++) { /* b along y, zero at a wall or else with zero mean */
+    v -= g->h * d->mean[j];
+    d->mean[j] = v;
+    sum += v;
+  }
   for (j = 0; j < g->n[1]; j++) {
     d->flow[j] = mean[0] * (profile ? profile[j] : g->wall[1] ? 0 : 1);
-    if (!g->wall[1]) d->mean[j] += mean[1];
+    if (!g->wall[1]) d->mean[j] += mean[1] - sum / (PetscReal)g->n[1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

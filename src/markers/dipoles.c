@@ -11,19 +11,6 @@ void DipoleStencilsUnwrapped(Grid g, const PetscReal X[2], Stencil s[DIPOLE_COUN
     }
 }
 
-/* Put stencils on the grid: first entries into the period, weights folded at walls. */
-static void DipoleWrap(Grid g, Stencil s[DIPOLE_COUNT]) {
-  for (int k = 0; k < DIPOLE_COUNT; k++)
-    for (int dir = 0; dir < 2; dir++) {
-      PetscInt *first = &s[k].first[dir];
-      if (g->wall[dir]) {
-        FoldLow(FOLD_SMOOTH, first, &s[k].n[dir], s[k].weight[dir]);
-        FoldHigh(FOLD_SMOOTH, g->n[dir] - (k == DIPOLE_XY ? 2 : 1), first, &s[k].n[dir], s[k].weight[dir]);
-      } else
-        *first = ((*first % g->n[dir]) + g->n[dir]) % g->n[dir];
-    }
-}
-
 /* Keep the entries along dir that are unknowns of the field: faces on walls are not. */
 static void SpotClip(Grid g, Field field, int dir, Stencil *spot) {
   const PetscInt end = (int)field == dir ? g->n[dir] - 1 : g->n[dir];
@@ -63,7 +50,15 @@ void DipoleSpotsOf(Grid g, PetscReal nu, Stencil s[DIPOLE_COUNT], Stencil spot[D
   const PetscReal force = -nu / PetscPowRealInt(g->h, 3), half = -0.5 / PetscSqr(g->h);
   static const PetscInt before[DIPOLE_SPOTS][2] = {{1, PLAIN}, {PLAIN, 0},     {0, PLAIN},
                                                    {PLAIN, 1}, {PLAIN, PLAIN}, {PLAIN, PLAIN}};
-  DipoleWrap(g, s);
+  for (int k = 0; k < DIPOLE_COUNT; k++) /* onto the grid: first entries into the period, weights folded at walls */
+    for (int dir = 0; dir < 2; dir++) {
+      PetscInt *first = &s[k].first[dir];
+      if (g->wall[dir]) {
+        FoldLow(FOLD_SMOOTH, first, &s[k].n[dir], s[k].weight[dir]);
+        FoldHigh(FOLD_SMOOTH, g->n[dir] - (k == DIPOLE_XY ? 2 : 1), first, &s[k].n[dir], s[k].weight[dir]);
+      } else
+        *first = ((*first % g->n[dir]) + g->n[dir]) % g->n[dir];
+    }
   for (int q = 0; q < DIPOLE_SPOTS; q++) {
     const Field field = dipole_form.of[q].field;
     const Stencil *part = &s[dipole_form.of[q].part];
@@ -90,14 +85,6 @@ static PetscReal SpotMoment(Grid g, Field field, const Stencil *s, int dir, Pets
   return moment;
 }
 
-/* Sum of a spot's weights in the rows next to the walls along dir. */
-static PetscReal SpotEnds(Grid g, const Stencil *s, int dir) {
-  PetscReal sum = 0;
-  for (PetscInt k = 0; k < s->n[dir]; k++)
-    if (s->first[dir] + k == 0 || s->first[dir] + k == g->n[dir] - 1) sum += s->weight[dir][k];
-  return sum;
-}
-
 void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal T[DIPOLE_COUNT], int dir,
                      PetscReal shortfall[2]) {
   const PetscReal cell = PetscSqr(g->h);
@@ -112,8 +99,11 @@ void DipoleShortfall(Grid g, PetscReal nu, const PetscReal X[2], const PetscReal
     PetscReal along, sum;
     (void)SpotMoment(g, field, &spot[q], 1 - dir, &along);
     const PetscReal part = cell * T[dipole_form.of[q].part] * along, moment = SpotMoment(g, field, &spot[q], dir, &sum);
+    PetscReal ends = 0; /* weights in the rows next to the walls */
+    for (PetscInt k = 0; k < spot[q].n[dir]; k++)
+      if (spot[q].first[dir] + k == 0 || spot[q].first[dir] + k == g->n[dir] - 1) ends += spot[q].weight[dir][k];
     if (field == FIELD_P)
-      shortfall[dir] += 0.5 * nu * part * SpotEnds(g, &spot[q], dir) * g->n[dir];
+      shortfall[dir] += 0.5 * nu * part * ends * g->n[dir];
     else
       shortfall[field] -= part * moment;
   }

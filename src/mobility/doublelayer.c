@@ -54,37 +54,28 @@ PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer s, const FluidSpec *spec) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normals of the vesicles that have a jump. */
-static PetscErrorCode PlaceNormals(DoubleLayer s) {
+/* Normals and dipoles' stencils of the vesicles that have a jump. */
+static PetscErrorCode DoubleLayerPlaceSources(DoubleLayer s) {
   const Bodies m = s->near->set.bodies;
+  const Markers markers = s->near->set.markers;
   const Layout l = m->layout;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt first = l->start[v];
     if (s->ratio[v] == 1) continue;
-    PetscCall(DoubleGeometry(m->spectral[v], LayoutCount(l, v), s->near->set.markers->X + 2 * first,
-                             s->normal + 2 * first, s->along + first));
+    PetscCall(DoubleGeometry(m->spectral[v], LayoutCount(l, v), markers->X + 2 * first, s->normal + 2 * first,
+                             s->along + first));
     s->length[v] = 0;
-    for (PetscInt k = first; k < l->start[v + 1]; k++) s->length[v] += s->along[k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The dipoles' stencils of the vesicles that have a jump. */
-static PetscErrorCode PlaceDipoles(DoubleLayer s) {
-  const NearField f = s->near;
-  const Layout l = f->set.bodies->layout;
-  const Grid g = f->set.markers->grid;
-  PetscFunctionBeginUser;
-  if (f->set.markers->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < l->bodies; v++)
-    for (PetscInt k = l->start[v]; k < l->start[v + 1] && s->ratio[v] != 1; k++) {
+    for (PetscInt k = first; k < l->start[v + 1]; k++) {
       Stencil part[DIPOLE_COUNT];
-      DipoleStencilsUnwrapped(g, f->set.markers->X + 2 * k, part);
+      s->length[v] += s->along[k];
+      if (markers->grid->free) continue;
+      DipoleStencilsUnwrapped(markers->grid, markers->X + 2 * k, part);
       for (int c = 0; c < DIPOLE_COUNT; c++) StencilPad(&part[c], &s->dipole[DIPOLE_COUNT * k + c]);
-      DipoleSpotsOf(g, f->set.nu, part, s->spot + DIPOLE_SPOTS * k);
+      DipoleSpotsOf(markers->grid, s->near->set.nu, part, s->spot + DIPOLE_SPOTS * k);
     }
-  PetscCall(StencilRowsPlace(s->list, l->M, s->spot));
+  }
+  if (!markers->grid->free) PetscCall(StencilRowsPlace(s->list, l->M, s->spot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,9 +134,8 @@ static PetscErrorCode FillBlock(DoubleLayer s, const NearBlock *b, PetscBool lat
 PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->place, 0, 0, 0, 0));
-  PetscCall(PlaceNormals(s));
+  PetscCall(DoubleLayerPlaceSources(s));
   if (s->box) PetscCall(BoxPartPlace(s->box));
-  PetscCall(PlaceDipoles(s));
   PetscCall(LayerPairsPlace(s->pairs));
   PetscCall(FindBlocks(s));
   for (PetscInt k = 0; k < s->blocks; k++) PetscCall(FillBlock(s, &s->block[k], PETSC_TRUE, &s->store));
@@ -153,8 +143,9 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The jump of markers that move with U. */
-static PetscErrorCode SetJump(DoubleLayer s, const PetscScalar U[]) {
+/* The jump of markers that move with U, and tensors of its dipoles, less its flux; zero where there is no jump, as for
+   a ratio of 1, which has no normals. */
+static PetscErrorCode DoubleLayerSetDipoles(DoubleLayer s, const PetscScalar U[]) {
   const Layout l = s->near->set.bodies->membrane->layout; /* obstacles, whose J is zero, come behind */
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, U, s->plain));
@@ -166,14 +157,6 @@ static PetscErrorCode SetJump(DoubleLayer s, const PetscScalar U[]) {
     for (PetscInt k = first; k < end && s->ratio[v] != 1; k++)
       s->jump[k] -= flux / s->length[v] * s->normal[k] / s->along[k / 2];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The jump of markers that move with U, and tensors of its dipoles, less its flux; zero where there is no jump, as for
-   a ratio of 1, which has no normals. */
-static PetscErrorCode DoubleLayerSetDipoles(DoubleLayer s, const PetscScalar U[]) {
-  PetscFunctionBeginUser;
-  PetscCall(SetJump(s, U));
   for (PetscInt k = 0; k < s->near->set.bodies->layout->M; k++) {
     const PetscReal *J = s->jump + 2 * k, *N = s->normal + 2 * k;
     const PetscBool none = J[0] == 0 && J[1] == 0;

@@ -17,18 +17,6 @@ static PetscErrorCode CreateLayers(Mobility m, const MobilitySetting *setting) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateSolver(Mobility m) {
-  PetscFunctionBeginUser;
-  PetscCall(LayoutCreateVec(m->bodies->layout, 2, &m->F));
-  if (m->contrast) PetscCall(LayoutCreateVec(m->bodies->membrane->layout, 2, &m->G));
-  if (m->fluid->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StokesCreate(m->fluid, &m->stokes));
-  m->stream = StokesStream(m->stokes);
-  if (m->contrast) PetscCall(DipoleRowsCreate(m->fluid->grid, m->fluid->nu, &m->dipoles));
-  if (!m->fluid->steady) PetscCall(VecDuplicate(m->F, &m->flow));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode MobilityCreate(Fluid fluid, Bodies bodies, const MobilitySetting *setting, Mobility *out) {
   Mobility m;
   PetscFunctionBeginUser;
@@ -38,7 +26,14 @@ PetscErrorCode MobilityCreate(Fluid fluid, Bodies bodies, const MobilitySetting 
   m->bodies = bodies;
   PetscCall(MarkersCreate(fluid->grid, bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &m->markers));
   PetscCall(CreateLayers(m, setting));
-  if (setting->solver) PetscCall(CreateSolver(m));
+  if (!setting->solver) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayoutCreateVec(bodies->layout, 2, &m->F));
+  if (m->contrast) PetscCall(LayoutCreateVec(bodies->membrane->layout, 2, &m->G));
+  if (fluid->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StokesCreate(fluid, &m->stokes));
+  m->stream = StokesStream(m->stokes);
+  if (m->contrast) PetscCall(DipoleRowsCreate(fluid->grid, fluid->nu, &m->dipoles));
+  if (!fluid->steady) PetscCall(VecDuplicate(m->F, &m->flow));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,15 +127,6 @@ PetscErrorCode MobilityBegin(Mobility m, const MobilityKnown *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U = E u of the whole forcing of the step, whose dipoles have been spread. */
-static PetscErrorCode MobilityFollow(Mobility m, Vec U) {
-  PetscFunctionBeginUser;
-  PetscCall(MobilitySetDipoles(m, m->G, PETSC_FALSE));
-  PetscCall(MarkersFollow(m->markers, m->stream, m->dipoles, m->known->f, NULL, U, &m->measures));
-  PetscCall(VecScale(U, MobilityGridPart(m, m->fluid->alpha)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* In fluid with inertia: the flow of the step gets that of the states before and of all forces (the first time) or that
    of the forces F; U = E u. What is measured is then a sum; that of divergences is a bound. */
 static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
@@ -160,26 +146,27 @@ static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces F and the dipoles of the motion G join the forcing of the step. */
-static PetscErrorCode MobilitySpread(Mobility m, Vec F, Vec G) {
-  const PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(ForcingSpread(m->known->f, m->markers, -1 / PetscSqr(m->fluid->grid->h), F));
-  if (!m->contrast) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(G, &a));
-  PetscCall(DoubleLayerSpread(m->contrast, a, m->known->f));
-  PetscCall(VecRestoreArrayRead(G, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode MobilityAdd(Mobility m, Vec F, Vec G, Vec U) {
+  const PetscScalar *a;
   PetscFunctionBeginUser;
   m->added++;
   PetscCall(VecAXPY(m->F, 1, F));
   if (m->contrast) PetscCall(VecAXPY(m->G, 1, G));
   if (m->stokes) {
-    PetscCall(MobilitySpread(m, F, m->added == 1 ? m->G : G)); /* the first time with what is known of the motion */
-    PetscCall(m->known->past ? MobilityFollowFlow(m, F, U) : MobilityFollow(m, U));
+    const Vec jumps = m->added == 1 ? m->G : G; /* the first time with what is known of the motion */
+    PetscCall(ForcingSpread(m->known->f, m->markers, -1 / PetscSqr(m->fluid->grid->h), F));
+    if (m->contrast) {
+      PetscCall(VecGetArrayRead(jumps, &a));
+      PetscCall(DoubleLayerSpread(m->contrast, a, m->known->f));
+      PetscCall(VecRestoreArrayRead(jumps, &a));
+    }
+    if (m->known->past)
+      PetscCall(MobilityFollowFlow(m, F, U));
+    else { /* E u of the whole forcing */
+      PetscCall(MobilitySetDipoles(m, m->G, PETSC_FALSE));
+      PetscCall(MarkersFollow(m->markers, m->stream, m->dipoles, m->known->f, NULL, U, &m->measures));
+      PetscCall(VecScale(U, MobilityGridPart(m, m->fluid->alpha)));
+    }
   } else
     PetscCall(VecSet(U, 0));
   PetscCall(MobilityFinish(m, m->F, m->G, U));

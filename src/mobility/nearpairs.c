@@ -61,19 +61,13 @@ typedef struct {
 } Image;
 #define MOST_IMAGES 9
 
-/* Whether the image of a spanning curve p, q periods away goes on where the curve ends. */
-static PetscBool Continues(NearList *f, PetscInt v, PetscInt p, PetscInt q) {
-  const CurveKind *kind = &f->pairs->set->bodies->kind[v];
-  if (kind->type != CURVE_SPANNING) return PETSC_FALSE;
-  return (kind->span[0] != 0 ? q == 0 : p == 0) ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* The images of w near v, the nearest first; of v's own without a box part one of each two that are opposite. */
 static PetscErrorCode Images(NearList *f, PetscInt v, PetscInt w, Image image[MOST_IMAGES], int *count) {
   const Grid g = f->pairs->set->markers->grid;
   const NearBounds *a = &f->pairs->bounds[v], *b = &f->pairs->bounds[w];
   const PetscReal reach = Reach(f, v, w);
   PetscInt around[2];
+  const CurveKind *kind = &f->pairs->set->bodies->kind[v];
   PetscReal middle[2], period[2];
   PetscFunctionBeginUser;
   *count = 0;
@@ -85,7 +79,8 @@ static PetscErrorCode Images(NearList *f, PetscInt v, PetscInt w, Image image[MO
   for (PetscInt q = -around[1]; q <= around[1]; q++)
     for (PetscInt p = -around[0]; p <= around[0]; p++) {
       Image one = {.shift = {(middle[0] + p) * period[0], (middle[1] + q) * period[1]}};
-      if (v == w && Continues(f, v, p, q)) continue;
+      const PetscBool along = kind->span[0] != 0 ? q == 0 : p == 0; /* where a spanning curve goes on */
+      if (v == w && kind->type == CURVE_SPANNING && along) continue;
       if (v == w && ((!p && !q) || (!f->pairs->set->box && (q < 0 || (q == 0 && p < 0))))) continue;
       if (!Meet(a, b, one.shift, reach)) continue;
       one.gap = NearListGap(f, v, w, one.shift, reach);

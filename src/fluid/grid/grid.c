@@ -3,13 +3,9 @@
 /* Smallest slab: two rows, so that the last rank has a row of v besides the wall. */
 #define LEAST_ROWS 2
 
-static PetscInt LastRows(PetscInt n, PetscInt ranks) {
-  const PetscInt block = (n + ranks - 1) / ranks;
-  return n - (ranks - 1) * block;
-}
-
 PetscBool GridFits(PetscInt n, PetscInt ranks) {
-  return ranks == 1 || LastRows(n, ranks) >= LEAST_ROWS;
+  const PetscInt block = (n + ranks - 1) / ranks; /* rows of all ranks but the last */
+  return ranks == 1 || n - (ranks - 1) * block >= LEAST_ROWS;
 }
 
 /* All ranks but the last have block rows; stop where the last one then has too few, and say what works. */

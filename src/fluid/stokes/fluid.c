@@ -125,17 +125,6 @@ static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateSolvers(const FluidSpec *spec, Fluid f) {
-  PetscFunctionBeginUser;
-  for (int k = FIELD_U; k <= FIELD_P; k++)
-    PetscCall(FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, &f->solver[k]));
-  PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
-  f->Linv = f->solver[FIELD_P]->pc;
-  f->L = f->solver[FIELD_P]->A;
-  PetscCall(CreateHelmholtz(f, spec->helmholtz));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   Fluid f;
   PetscFunctionBeginUser;
@@ -149,7 +138,14 @@ PetscErrorCode FluidCreate(const FluidSpec *spec, Fluid *out) {
   f->tridiagonal = !strcmp(spec->helmholtz, "fftw_tridiagonal") && !strcmp(spec->poisson, "fftw_tridiagonal");
   PetscCall(GridCreateG(f->grid, &f->G));
   PetscCall(GridCreateD(f->grid, &f->D));
-  if (!f->grid->free) PetscCall(CreateSolvers(spec, f));
+  for (int k = FIELD_U; k <= FIELD_P && !f->grid->free; k++)
+    PetscCall(FastSolverCreate(f->grid, (Field)k, k == FIELD_P ? spec->poisson : spec->helmholtz, &f->solver[k]));
+  if (!f->grid->free) {
+    PetscCall(FastSolverSetCoefficients(f->solver[FIELD_P], 0, -1));
+    f->Linv = f->solver[FIELD_P]->pc;
+    f->L = f->solver[FIELD_P]->A;
+    PetscCall(CreateHelmholtz(f, spec->helmholtz));
+  }
   PetscCall(FluidSetTimeCoefficient(f, 1 / spec->dt));
   f->total = spec->form == FORM_TOTAL;
   if (f->total) PetscCall(CreateWallData(spec, f));

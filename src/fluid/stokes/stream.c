@@ -85,26 +85,20 @@ static PetscErrorCode StreamSetUp(Stream s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Both means of a box that is periodic both ways to zero. */
-static PetscErrorCode HoldMean(Stream s, PetscReal *sum_v) {
-  const Grid g = s->fluid->grid;
-  PetscReal mean = 0;
-  PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) mean += s->means[j] / g->n[1];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) s->means[j] -= mean;
-  *sum_v = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Mode 0: the row means of u, and v's, which is the same everywhere, from the sum of its force. */
 static PetscErrorCode MeanFlow(Stream s, PetscReal sum) {
   const Grid g = s->fluid->grid;
+  PetscReal mean = 0;
   PetscFunctionBeginUser;
   PetscCall(TridiagonalEnd(s->mean));
   for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0; j--) TridiagonalDown(s->mean, j, &s->means[j]);
   if (s->flux) PetscCall(ZeroFluxCorrectMeans(s->flux, s->means));
-  if (s->fluid->held) PetscCall(HoldMean(s, &sum));
+  if (s->fluid->held) { /* both means to zero */
+    for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) mean += s->means[j] / g->n[1];
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
+    for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) s->means[j] -= mean;
+    sum = 0;
+  }
   s->mean_v = s->fluid->alpha > 0 ? sum / ((PetscReal)g->n[0] * g->n[1] * s->fluid->alpha) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,22 +146,11 @@ static PetscErrorCode HoldSides(Stream s, const StreamRows *rows, PetscBool meas
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solve, `past` and the flow being at hand. */
-static PetscErrorCode StreamSweeps(Stream s, const StreamRows *rows, PetscBool measured) {
-  PetscReal sum;
-  PetscFunctionBeginUser;
-  StreamGather(s, rows, measured);
-  sum = s->mean_v;
-  PetscCall(SlabsClose(s->slabs, &sum));
-  if (s->mean) PetscCall(MeanFlow(s, sum));
-  if (s->side) PetscCall(HoldSides(s, rows, measured));
-  StreamScatter(s, rows, measured);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *measures) {
   const StreamPast *past = rows->past && rows->past->count ? rows->past : NULL;
+  const PetscBool measured = measures != NULL;
   StreamRows these = *rows;
+  PetscReal sum;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_FAST_SOLVE));
   these.past = past;
@@ -175,7 +158,12 @@ PetscErrorCode StreamSolve(Stream s, const StreamRows *rows, StreamMeasures *mea
   StreamMeterBegin(s->meter);
   if (past) PetscCall(StreamFlowsBegin(s->flows, past));
   if (rows->flow) PetscCall(VecGetArray(rows->flow, &s->flow));
-  PetscCall(StreamSweeps(s, &these, measures ? PETSC_TRUE : PETSC_FALSE));
+  StreamGather(s, &these, measured);
+  sum = s->mean_v;
+  PetscCall(SlabsClose(s->slabs, &sum));
+  if (s->mean) PetscCall(MeanFlow(s, sum));
+  if (s->side) PetscCall(HoldSides(s, &these, measured));
+  StreamScatter(s, &these, measured);
   if (rows->flow) PetscCall(VecRestoreArray(rows->flow, &s->flow));
   s->flow = NULL;
   if (past) PetscCall(StreamFlowsEnd(s->flows, past, &s->meter->own.past));

@@ -88,13 +88,6 @@ static void MeasureRow(Stream s, const StreamRows *rows, PetscInt j, const Petsc
     StreamMeterSquares(s->meter, j, row, mean, j < s->slabs->rows, s->mean_v + StreamGiven(rows, FIELD_V, at));
 }
 
-/* The means of row j into the flow, or added to it. */
-static void FlowMeans(Stream s, const StreamRows *rows, PetscInt j) {
-  PetscScalar *flow = s->flow + j * s->flows->each + s->flows->width;
-  const PetscReal mean[2] = {s->means[j], s->mean_v};
-  for (int comp = 0; comp < 2; comp++) flow[comp] = (rows->add ? flow[comp] : 0) + mean[comp];
-}
-
 /* Down all rows, or to the last one that is wanted. */
 void StreamScatter(Stream s, const StreamRows *rows, PetscBool measured) {
   const Grid g = s->fluid->grid;
@@ -118,7 +111,10 @@ void StreamScatter(Stream s, const StreamRows *rows, PetscBool measured) {
     const PetscBool wanted = j >= first && j < end;
     if (wanted) VelocityRows(s, rows, measured, j, low, high);
     if (measured) MeasureRow(s, rows, j, wanted ? s->curl : NULL);
-    if (s->flow) FlowMeans(s, rows, j);
+    for (int comp = 0; comp < 2 && s->flow; comp++) { /* the means into the flow, or added to it */
+      PetscScalar *mean = s->flow + j * s->flows->each + s->flows->width + comp;
+      *mean = (rows->add ? *mean : 0) + (comp ? s->mean_v : s->means[j]);
+    }
     high = low;
   }
 }

@@ -45,14 +45,6 @@ static PetscReal GivenForce(Stream s, const StreamRows *rows, PetscInt j) {
   return (PetscReal)g->n[0] * s->fluid->nu / PetscSqr(g->h) * bend;
 }
 
-/* Take in the sum of the force on v in row j: for the mean flow, or for the meter. */
-static void TakeSum(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j, PetscReal sum) {
-  if (!s->fluid->grid->wall[1])
-    s->mean_v += sum;
-  else if (measured)
-    StreamMeterForce(s->meter, j, sum + GivenForce(s, rows, j));
-}
-
 /* The way up through row j of nodes; low: the row of u's force below it. Returns the row of u's force above it. */
 static const PetscScalar *GatherRow(Stream s, const StreamRows *rows, PetscBool measured, PetscInt j,
                                     const PetscScalar *low, const PetscReal past[], const PetscReal below[]) {
@@ -61,7 +53,10 @@ static const PetscScalar *GatherRow(Stream s, const StreamRows *rows, PetscBool 
   if (j + 1 < end || end == s->fluid->grid->rows[FIELD_U])
     high = rows->force(rows->ctx, FIELD_U, j + 1, s->row[(j + 1) % 2]);
   v = rows->force(rows->ctx, FIELD_V, j, s->row[2]);
-  TakeSum(s, rows, measured, j, measured || !s->fluid->grid->wall[1] ? StreamRowSum(n, v) : 0);
+  if (!s->fluid->grid->wall[1])
+    s->mean_v += StreamRowSum(n, v);
+  else if (measured)
+    StreamMeterForce(s->meter, j, StreamRowSum(n, v) + GivenForce(s, rows, j));
   ForcedRow(s, j, CurlModes(s, low, high, v, past), below);
   return high;
 }

@@ -174,18 +174,13 @@ static PetscErrorCode SlabsToSlabs(Slabs s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Blocks of modes in which anything comes in from below. */
-static PetscInt SlabsBlocksBelow(Slabs s) {
-  const PetscReal *y1 = s->below, *y2 = y1 + s->width;
-  PetscInt k = s->width;
-  while (k > 0 && y1[k - 1] == 0 && y2[k - 1] == 0) k--;
-  return (k + BLOCK - 1) / BLOCK;
-}
-
 /* y2 of the rows += factor times the contribution of Y from below. */
 static void SlabsAddBelow(Slabs s, PetscReal factor) {
-  const PetscInt w = s->width, blocks = SlabsBlocksBelow(s);
+  const PetscInt w = s->width;
   const PetscReal *below = s->below;
+  PetscInt most = w; /* modes up to the last in which anything comes in */
+  while (most > 0 && below[most - 1] == 0 && below[w + most - 1] == 0) most--;
+  const PetscInt blocks = (most + BLOCK - 1) / BLOCK;
   for (PetscInt b = 0; b < blocks; b++) {
     const PetscReal *restrict r1 = s->factors->r[0] + b * BLOCK, *restrict r2 = s->factors->r[1] + b * BLOCK;
     PetscReal y1[BLOCK], y2[BLOCK];
