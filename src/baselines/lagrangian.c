@@ -83,19 +83,6 @@ static PetscErrorCode Create(Coupling coupling, const char prefix[], int each, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GMRES preconditions from the right unless the user names a side: its test then sees the residual itself, dt times
-   which is the surface divergence. The left-preconditioned residual underestimates it, the more the finer the grid. */
-static PetscErrorCode PreferRight(KSP ksp) {
-  const char *prefix;
-  PetscBool gmres, given;
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
-  PetscCall(PetscOptionsHasName(NULL, prefix, "-ksp_pc_side", &given));
-  PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPGMRES, &gmres));
-  if (gmres && !given) PetscCall(KSPSetPCSide(ksp, PC_RIGHT));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* PCILU in nested dissection, unless options say otherwise. */
 static PetscErrorCode CreateChat(LagrangianSolver s) {
   PetscBool none;
@@ -113,8 +100,11 @@ static PetscErrorCode CreateChat(LagrangianSolver s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* GMRES preconditions from the right unless the user names a side: its test then sees the residual itself, dt times
+   which is the surface divergence. The left-preconditioned residual underestimates it, the more the finer the grid. */
 PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
   LagrangianSolver s;
+  PetscBool gmres, given;
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(Create(coupling, "tension_", 1, MultTension, out));
@@ -130,7 +120,9 @@ PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
     PetscCall(PCShellSetName(pc, "of the assembled Chat, on every rank"));
   }
   PetscCall(KSPSetFromOptions(s->ksp));
-  PetscCall(PreferRight(s->ksp));
+  PetscCall(PetscOptionsHasName(NULL, "tension_", "-ksp_pc_side", &given));
+  PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPGMRES, &gmres));
+  if (gmres && !given) PetscCall(KSPSetPCSide(s->ksp, PC_RIGHT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,14 +4,6 @@
   (12 * KERNEL_MAX_POINTS * KERNEL_MAX_POINTS) /* of a column: two ends, two components, face and cells                \
                                                 */
 
-/* The root of -1/diag(L) over h. */
-static PetscReal CellFactor(Grid g, const PetscInt cell[2]) {
-  PetscInt faces = 4; /* diag(L) = -faces/h^2 */
-  for (int dir = 0; dir < 2; dir++)
-    if (g->wall[dir]) faces -= (cell[dir] <= 0) + (cell[dir] >= g->n[dir] - 1);
-  return 1 / PetscSqrtReal((PetscReal)faces);
-}
-
 /* Column k of S, tau_k (E_k - E_before)^T/h^2, and behind it that of Q = (-diag(L))^{-1/2} G^T S, as row k of A. */
 static PetscErrorCode AddColumn(Coupling c, PetscInt k, PetscInt before, const PetscReal tau[2], Mat A) {
   const Grid g = c->fluid->grid;
@@ -27,7 +19,10 @@ static PetscErrorCode AddColumn(Coupling c, PetscInt k, PetscInt before, const P
         PetscInt cell[2] = {(s->first[0] + a) % g->n[0], (s->first[1] + b) % g->n[1]};
         PetscCall(MatSetValue(A, k, comp * cells + cell[1] * g->n[0] + cell[0], value, ADD_VALUES));
         for (int side = 0; side < 2; side++) { /* the face is the end of this cell and the beginning of the next one */
-          const PetscReal part = (side ? value : -value) * CellFactor(g, cell);
+          PetscInt faces = 4;                  /* diag(L) = -faces/h^2 */
+          for (int dir = 0; dir < 2; dir++)
+            if (g->wall[dir]) faces -= (cell[dir] <= 0) + (cell[dir] >= g->n[dir] - 1);
+          const PetscReal part = (side ? value : -value) / PetscSqrtReal((PetscReal)faces);
           PetscCall(MatSetValue(A, k, (2 * g->n[1] + cell[1]) * g->n[0] + cell[0], part, ADD_VALUES));
           cell[comp] = (cell[comp] + 1) % g->n[comp];
         }

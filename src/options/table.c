@@ -6,19 +6,6 @@ static void *OptionPlace(const OptionTable *t, void *values, PetscInt i) {
   return (char *)values + t->row[i].offset;
 }
 
-/* The value that the user gave, as long as it may be, or the default. */
-static PetscErrorCode OptionReadValue(MPI_Comm comm, const OptionRow *o, PetscBool given, void *place) {
-  const PetscBool ranged = *o->range && strcmp(o->range, "any");
-  const char *text = NULL;
-  PetscFunctionBeginUser;
-  if (given) PetscCall(PetscOptionsFindPair(NULL, NULL, o->name, &text, NULL));
-  if (!text) text = given ? "" : o->value;
-  PetscCheck(!given || *text || o->type == OPT_BOOL, comm, PETSC_ERR_USER_INPUT,
-             "%s: given without a value; allowed: %s", o->name, ranged ? o->range : o->help);
-  PetscCall(OptionParse(comm, o, text, place));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const OptionRow row[],
                            const OptionDefault dependent[], OptionTable *t, void *values) {
   PetscFunctionBeginUser;
@@ -35,7 +22,12 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
     PetscCall(PetscSNPrintf(ranged, sizeof(ranged), *range ? "%s [%s]" : "%s%s", help, range));
     PetscCall(
         PetscOptionsString(row[i].name, ranged, "docs/options.md", row[i].value, text, sizeof(text), &t->given[i]));
-    PetscCall(OptionReadValue(comm, &row[i], t->given[i], OptionPlace(t, values, i)));
+    const char *value = NULL; /* as long as it may be */
+    if (t->given[i]) PetscCall(PetscOptionsFindPair(NULL, NULL, row[i].name, &value, NULL));
+    if (!value) value = t->given[i] ? "" : row[i].value;
+    PetscCheck(!t->given[i] || *value || row[i].type == OPT_BOOL, comm, PETSC_ERR_USER_INPUT,
+               "%s: given without a value; allowed: %s", row[i].name, *range ? range : row[i].help);
+    PetscCall(OptionParse(comm, &row[i], value, OptionPlace(t, values, i)));
   }
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -79,13 +79,6 @@ static PetscBool IndexRead(FILE *index, PetscInt n, PetscInt *entry, PetscReal *
   return PETSC_TRUE;
 }
 
-/* Read an entry of n numbers at its place in the old file. */
-static PetscBool EntryRead(int old, PetscInt n, PetscBool single, off_t place, PetscReal values[]) {
-  const size_t bytes = (size_t)n * (single ? sizeof(float) : sizeof(*values));
-  if (pread(old, values, bytes, place) != (ssize_t)bytes) return PETSC_FALSE;
-  return !single || H5Tconvert(H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, (size_t)n, values, NULL, H5P_DEFAULT) >= 0;
-}
-
 /* Copy the first `most` entries into the new file `f`, on rank 0; copied: the number of entries that could be read. An
    entry may have several lines, where a run went on after its end: the last line counts. */
 static PetscErrorCode EntriesCopy(const AppendedKind *kind, PetscInt most, FILE *index, int old, H5File *f,
@@ -101,8 +94,12 @@ static PetscErrorCode EntriesCopy(const AppendedKind *kind, PetscInt most, FILE 
     PetscBool good = PETSC_TRUE;
     if (entry >= most) continue;
     for (PetscInt k = 0; good && k < kind->n; k++) {
-      good = EntryRead(old, EntrySize(kind, k), kind->series[k].single, (off_t)place[k], values);
-      if (good) H5Transfer(f, PETSC_TRUE, kind->series[k].path, entry, EntrySize(kind, k), values);
+      const PetscInt n = EntrySize(kind, k);
+      const size_t bytes = (size_t)n * (kind->series[k].single ? sizeof(float) : sizeof(*values));
+      good = pread(old, values, bytes, (off_t)place[k]) == (ssize_t)bytes;
+      if (good && kind->series[k].single)
+        good = H5Tconvert(H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, (size_t)n, values, NULL, H5P_DEFAULT) >= 0;
+      if (good) H5Transfer(f, PETSC_TRUE, kind->series[k].path, entry, n, values);
     }
     if (!good) break;
     H5Transfer(f, PETSC_TRUE, "/time", entry, 1, &t);

@@ -205,25 +205,19 @@ void FolderWatch(Folder *folder, const char file[]) {
   folder->files = PetscMax(folder->files, k + 1);
 }
 
-/* Number of the first watched file that has been removed or replaced; -1 when there is none. A file system that does
-   not answer proves nothing. */
-static PetscMPIInt FolderFindForeign(Folder *folder, char path[PETSC_MAX_PATH_LEN]) {
-  struct stat there;
-  for (int k = 0; k < folder->files; k++) {
-    FolderPath(folder, folder->file[k].name, path);
-    const int error = stat(path, &there) ? errno : 0;
-    if (error ? error == ENOENT || error == ENOTDIR : !IsSameFile(&there, &folder->file[k].status)) return k;
-  }
-  return -1;
-}
-
 PetscErrorCode FolderCheckOwn(Folder *folder) {
   char path[PETSC_MAX_PATH_LEN] = "";
-  PetscMPIInt foreign = -1;
+  PetscMPIInt foreign = 0;
+  struct stat there;
   PetscFunctionBeginUser;
-  if (!folder->rank) foreign = FolderFindForeign(folder, path);
+  for (int k = 0; k < folder->files && !foreign;
+       k++) { /* on rank 0; a file system that does not answer proves nothing */
+    FolderPath(folder, folder->file[k].name, path);
+    const int error = stat(path, &there) ? errno : 0;
+    foreign = error ? error == ENOENT || error == ENOTDIR : !IsSameFile(&there, &folder->file[k].status);
+  }
   PetscCallMPI(MPI_Bcast(&foreign, 1, MPI_INT, 0, folder->comm));
-  if (foreign < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!foreign) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Bcast(path, sizeof(path), MPI_CHAR, 0, folder->comm));
   folder->failed = PETSC_TRUE;
   PetvesCheck(PETSC_FALSE, folder->comm,

@@ -7,28 +7,20 @@ static PetscReal OutputNextTime(Output o) {
   return StepDecimal(every * (PetscFloorReal((q->t + 1e-9 * q->dt) / every) + 1));
 }
 
-/* Remove what would be taken for this run's: the summary, and checkpoints of a run that is written over. */
-static PetscErrorCode OutputClearFolder(Output o) {
-  static const char *const files[] = {"run.h5", "run.h5.new", "vesicles.h5", "vesicles.h5.new"};
-  PetscFunctionBeginUser;
-  FolderRemove(&o->folder, "summary.json");
-  if (o->go_on) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < 4; k++) FolderRemove(&o->folder, files[k]);
-  CheckpointClear(&o->folder);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The files of a new run, which begin with the checkpoint's state after a restart in a new folder; or those of an
    earlier run, cut to what its checkpoint counts. Nothing of it is changed before all of it has been found good. */
 static PetscErrorCode OutputOpenFiles(Output o, PetscInt frames) {
   const char *restart = o->scene->output.restart;
+  static const char *const files[] = {"run.h5", "run.h5.new", "vesicles.h5", "vesicles.h5.new"};
   PetscInt rows = APPENDED_NEW;
   PetscFunctionBeginUser;
   if (o->go_on)
     PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart, &rows));
   else
     PetscCall(SeriesPrepare(&o->series, &o->folder, o->record.header, o->record.text));
-  PetscCall(OutputClearFolder(o));
+  FolderRemove(&o->folder, "summary.json"); /* what would be taken for this run's, as checkpoints are */
+  for (int k = 0; k < 4 && !o->go_on; k++) FolderRemove(&o->folder, files[k]);
+  if (!o->go_on) CheckpointClear(&o->folder);
   PetscCall(FramesOpen(&o->frames, &o->folder, o->scheme, o->go_on ? frames : APPENDED_NEW, restart));
   PetscCall(VesicleFileOpen(&o->vesicles, &o->folder, o->scheme, rows, restart));
   if (o->go_on) PetscCall(XdmfWrite(&o->xdmf, &o->frames.file));

@@ -42,16 +42,6 @@ static void SummaryCountBytes(Summary *s) {
   }
 }
 
-/* Whether resolved.opts has an option of the database already, or must not have it. */
-static PetscBool ResolvedSkips(const char *name) {
-  const char *const never[] = {"-options_file", "-help"};
-  for (size_t i = 0; i < sizeof(never) / sizeof(never[0]); i++)
-    if (!strcmp(name, never[i])) return PETSC_TRUE;
-  for (PetscInt i = 0; SceneOptionRow(i); i++)
-    if (!strcmp(name, SceneOptionRow(i)->name)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* Print PETSc's own options that the user gave, -tension_ksp_monitor, -log_view and so on. A word of the database may
    be a value, which is no option. A file must not have the options that TypedIsOwn names. */
 static PetscErrorCode ResolvedPrintOthers(FILE *f) {
@@ -61,7 +51,9 @@ static PetscErrorCode ResolvedPrintOthers(FILE *f) {
   for (word = strtok_r(all, " \n", &end); word; word = strtok_r(NULL, " \n", &end)) {
     const char *value = NULL;
     PetscBool given = PETSC_FALSE;
-    if (word[0] != '-' || !isalpha((unsigned char)word[1]) || ResolvedSkips(word)) continue;
+    PetscBool known = !strcmp(word, "-options_file") || !strcmp(word, "-help");
+    for (PetscInt i = 0; SceneOptionRow(i) && !known; i++) known = !strcmp(word, SceneOptionRow(i)->name);
+    if (word[0] != '-' || !isalpha((unsigned char)word[1]) || known) continue;
     PetscCall(PetscOptionsFindPair(NULL, NULL, word, &value, &given));
     if (given && !TypedIsOwn(word, value)) OptionPrint(f, word, value ? value : "");
   }

@@ -4,20 +4,15 @@
 #define TABLE_NEAR 14 /* cells up to which stencils are summed where the near field is exact */
 #define BOX_NEAR 8    /* cells up to which a pair has the lattice's sums */
 
-/* Whether the mobility between walls can be had from the box part's grids. */
-static PetscBool TakesBox(Coupling c) {
-  const Grid g = c->fluid->grid;
-  return c->fluid->steady && c->mobility->near && c->mobility->near->box && (g->wall[0] || g->wall[1]);
-}
-
 PetscErrorCode MeanMobilityCreate(const FluidSpec *spec, Coupling c, PetscReal reach, MeanMobility *out) {
+  const Grid g = c->fluid->grid;
   MeanMobility m;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
   *out = m;
   m->coupling = c;
   m->near = c->mobility->near ? TABLE_NEAR : PETSC_MAX_REAL;
-  if (TakesBox(c))
+  if (c->fluid->steady && c->mobility->near && c->mobility->near->box && (g->wall[0] || g->wall[1]))
     PetscCall(NearFieldCreateBoxPart(c->mobility->near, spec, PETSC_TRUE, &m->box));
   else if (!c->fluid->grid->free)
     PetscCall(MobilityTableCreate(spec, c->markers->kernel, reach, &m->table));
@@ -42,26 +37,21 @@ PetscErrorCode MeanMobilitySetUp(MeanMobility m, PetscReal alpha) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a pair's stencils are summed: near, and with all of their offsets in the table. */
-static PetscBool IsTableNear(MeanMobility m, const PetscReal cells[2]) {
-  for (int dir = 0; dir < 2; dir++)
-    if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) return PETSC_FALSE;
-  return cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near;
-}
-
 /* Mob of markers i and j, the nearest image: xx, yy, xy, yx. */
 static void TablePair(MeanMobility m, PetscInt i, PetscInt j, PetscReal Mob[4]) {
   const Grid g = m->coupling->fluid->grid;
   const PetscReal *X = m->coupling->markers->X;
   PetscReal cells[2];
-  PetscInt periods[2]; /* in cells */
+  PetscInt periods[2];         /* in cells */
+  PetscBool near = PETSC_TRUE; /* stencils are summed, with all of their offsets in the table */
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal period = g->hi[dir] - g->lo[dir], apart = X[2 * i + dir] - X[2 * j + dir];
     const PetscInt back = (PetscInt)PetscFloorReal(apart / period + 0.5);
     periods[dir] = -back * g->n[dir];
     cells[dir] = (apart - period * (PetscReal)back) / g->h;
+    if (PetscAbsReal(cells[dir]) > (PetscReal)(m->table->green.size[dir] - OFFSET_LAGS)) near = PETSC_FALSE;
   }
-  if (IsTableNear(m, cells))
+  if (near && cells[0] * cells[0] + cells[1] * cells[1] <= m->near * m->near)
     StencilFourSums(&m->table->green, &m->stencil[2 * i], &m->stencil[2 * j], periods, Mob);
   else {
     MeanTableAt(&m->table->mean, cells, Mob);

@@ -137,25 +137,20 @@ PetscErrorCode MobilityTableSetUp(MobilityTable m, PetscReal alpha) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lagrange's weights at x, 0 .. POINTS - 1. */
-static void LagrangeWeights(PetscReal x, PetscReal weight[POINTS]) {
-  static const PetscReal product[POINTS] = {-120, 24, -12, 12, -24, 120}; /* of i - j, j != i */
-  for (int i = 0; i < POINTS; i++) {
-    weight[i] = 1 / product[i];
-    for (int j = 0; j < POINTS; j++)
-      if (j != i) weight[i] *= x - j;
-  }
-}
-
 void MeanTableAt(const OffsetTable *t, const PetscReal cells[2], PetscReal mean[3]) {
   const PetscInt nx = 2 * t->size[0] + 1;
-  PetscReal w[2][POINTS];
+  static const PetscReal product[POINTS] = {-120, 24, -12, 12, -24, 120}; /* of i - j, j != i */
+  PetscReal w[2][POINTS];                                                 /* Lagrange's */
   PetscInt at[2];
   for (int dir = 0; dir < 2; dir++) {
     const PetscReal most = t->size[dir] - POINTS / 2;
     const PetscReal x = PetscMax(-most, PetscMin(most, cells[dir])) + t->size[dir];
     at[dir] = (PetscInt)x - POINTS / 2 + 1;
-    LagrangeWeights(x - (PetscReal)at[dir], w[dir]);
+    for (int i = 0; i < POINTS; i++) {
+      w[dir][i] = 1 / product[i];
+      for (int j = 0; j < POINTS; j++)
+        if (j != i) w[dir][i] *= x - (PetscReal)at[dir] - j;
+    }
   }
   for (int b = 0; b < OFFSET_COUNT; b++) {
     mean[b] = 0;

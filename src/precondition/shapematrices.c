@@ -105,24 +105,18 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Columns of own vesicle v's numbers in the frame of its shape: U and, unless NULL, sigma behind it. Returns how many.
- */
-static PetscInt IntoFrame(SharedShapes s, PetscInt v, const PetscScalar U[], const PetscScalar sigma[],
-                          PetscReal column[]) {
-  const Layout l = s->coupling->membrane->layout;
-  const PetscInt n = LayoutCount(l, v), at = LayoutOffset(l, v);
-  RigidFitInto(&s->fit[v - l->own], 2, n, U + 2 * at, column);
-  if (sigma) RigidFitInto(&s->fit[v - l->own], 1, n, sigma + at, column + 2 * n);
-  return sigma ? 3 * n : 2 * n;
-}
-
 /* A matrix of a shape times the columns of the vesicles that take it: s->to. */
 static PetscErrorCode ShapeProduct(SharedShapes s, const SharedShape *q, const PetscReal A[], PetscInt rows,
                                    const PetscScalar U[], const PetscScalar sigma[]) {
+  const Layout l = s->coupling->membrane->layout;
+  const PetscInt n = LayoutCount(l, q->like), inner = sigma ? 3 * n : 2 * n;
   PetscReal *x = s->from;
-  PetscInt inner = 0;
   PetscFunctionBeginUser;
-  for (PetscInt k = q->begin; k < q->end; k++, x += inner) inner = IntoFrame(s, s->order[k], U, sigma, x);
+  for (PetscInt k = q->begin; k < q->end; k++, x += inner) {
+    const PetscInt v = s->order[k], at = LayoutOffset(l, v);
+    RigidFitInto(&s->fit[v - l->own], 2, n, U + 2 * at, x);
+    if (sigma) RigidFitInto(&s->fit[v - l->own], 1, n, sigma + at, x + 2 * n);
+  }
   PetscCall(DenseProduct(PETSC_FALSE, rows, q->end - q->begin, inner, A, s->from, s->to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

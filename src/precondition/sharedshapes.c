@@ -170,18 +170,6 @@ static PetscErrorCode ChooseShapes(SharedShapes s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Own vesicles by shape. */
-static void SortByShape(SharedShapes s) {
-  const Layout l = s->coupling->membrane->layout;
-  PetscInt at = 0;
-  for (PetscInt k = 0; k < s->count; k++) {
-    s->shape[k].begin = at;
-    for (PetscInt v = l->own; v < l->end; v++)
-      if (s->of[v] == k) s->order[at++] = v;
-    s->shape[k].end = at;
-  }
-}
-
 /* Matrices of the shapes that own vesicles take, for the a0 in force. */
 static PetscErrorCode MakeShapeMatrices(SharedShapes s, PetscBool *failed) {
   const PetscReal a0 = s->coupling->fluid->a0;
@@ -200,12 +188,19 @@ static PetscErrorCode MakeShapeMatrices(SharedShapes s, PetscBool *failed) {
 }
 
 PetscErrorCode SharedShapesFollow(SharedShapes s, PetscBool *failed) {
+  const Layout l = s->coupling->membrane->layout;
   PetscLogEvent event;
+  PetscInt at = 0;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorMobility", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(ChooseShapes(s));
-  SortByShape(s);
+  for (PetscInt k = 0; k < s->count; k++) { /* own vesicles by shape */
+    s->shape[k].begin = at;
+    for (PetscInt v = l->own; v < l->end; v++)
+      if (s->of[v] == k) s->order[at++] = v;
+    s->shape[k].end = at;
+  }
   PetscCall(MakeShapeMatrices(s, failed));
   if (s->cross && !*failed) PetscCall(InteractionsPlace(s->cross));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
