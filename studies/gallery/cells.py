@@ -29,7 +29,7 @@ def cells(perimeter: float, fraction: float, pictures: Path | None = None) -> Ca
 
     reduced = min(1 / perimeter**2, 0.9999)
     changes = (
-        f"-vesicle_reduced_area {reduced} -vesicle_packing {fraction} -vesicle_markers {31 if perimeter < 1.1 else 51}"
+        f"-vesicle_reduced_area {reduced} -vesicle_packing {fraction} -vesicle_markers {41 if perimeter < 1.1 else 51}"
     )
     return case(f"{perimeter:g}_{fraction:g}", "cells", changes, measure)
 
