@@ -46,38 +46,12 @@ const PetscReal *ZeroFluxProfile(ZeroFlux z) {
   return b;
 }
 
-/* On every rank: what times the profile has a mean whose own part of the sum over rows is given, row means of u. */
-static PetscErrorCode Factor(ZeroFlux z, PetscReal sum, PetscReal *factor) {
-  const Grid g = z->fluid->grid;
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, g->comm));
-  *factor = sum / g->n[1];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux z, PetscReal means[]) {
   const Grid g = z->fluid->grid;
-  PetscReal sum = 0, factor;
+  PetscReal sum = 0;
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) sum += means[j];
-  PetscCall(Factor(z, sum, &factor));
-  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) means[j] -= factor * ZeroFluxProfile(z)[g->first + j];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ZeroFluxCorrect(ZeroFlux z, Vec u) {
-  const Grid g = z->fluid->grid;
-  const PetscInt n = g->n[0], rows = g->rows[FIELD_U];
-  PetscReal sum = 0, factor;
-  PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArray(u, &a));
-  for (PetscInt k = 0; k < n * rows; k++) sum += a[k];
-  PetscCall(Factor(z, sum / n, &factor));
-  for (PetscInt j = 0; j < rows; j++) {
-    const PetscReal off = factor * ZeroFluxProfile(z)[g->first + j];
-    for (PetscInt i = 0; i < n; i++) a[j * n + i] -= off;
-  }
-  PetscCall(VecRestoreArray(u, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, g->comm));
+  for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) means[j] -= sum / g->n[1] * ZeroFluxProfile(z)[g->first + j];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,9 +15,6 @@ PETSC_EXTERN PetscErrorCode ZeroFluxDestroy(ZeroFlux *flux);
 /* ZeroFluxProfile - b over its mean, [rows of all]. Not collective. */
 PETSC_EXTERN const PetscReal *ZeroFluxProfile(ZeroFlux flux);
 
-/* ZeroFluxCorrect - take the profile off the velocity of a Stokes solve, as much as makes its mean along x zero.
-   Collective. */
-PETSC_EXTERN PetscErrorCode ZeroFluxCorrect(ZeroFlux flux, Vec u);
-
-/* ZeroFluxCorrectMeans - ZeroFluxCorrect for the row means of u alone, means[rows of u on this rank]. Collective. */
+/* ZeroFluxCorrectMeans - take the profile off a Stokes solve's means of u, means[rows of u on this rank], as much as
+   makes their sum zero. Collective. */
 PETSC_EXTERN PetscErrorCode ZeroFluxCorrectMeans(ZeroFlux flux, PetscReal means[]);

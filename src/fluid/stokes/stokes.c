@@ -162,8 +162,6 @@ static PetscErrorCode Project(Stokes s, Vec r_u, Vec r_p, Vec u, Vec p) {
   PetscCall(GridGradient(f->grid, -1, p, PETSC_TRUE, u));
   PetscCall(VecAXPBY(p, -f->nu, f->alpha, q));
   PetscCall(DMRestoreGlobalVector(f->grid->da[FIELD_P], &q));
-  if (s->flux) PetscCall(ZeroFluxCorrect(s->flux, u));
-  if (f->held) PetscCall(FluidRemoveMean(f, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
