@@ -15,14 +15,20 @@ PetscErrorCode FreeBodiesCreateVecs(Obstacles o, Vec *force, Vec *place) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void FreeBodiesLoads(Obstacles o, PetscScalar y[]) {
-  (void)PetscArraycpy(y + 2 * o->layout->n, o->load + 3 * o->free->first, FreeBodiesOwn(o));
+PetscErrorCode FreeBodiesShift(Obstacles o, Vec place, Vec from, PetscReal d[]) {
+  const PetscScalar *x, *y;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(place, &x));
+  PetscCall(VecGetArrayRead(from, &y));
+  for (PetscInt k = 0; k < FreeBodiesOwn(o); k++) d[k] = x[3 * o->free->first + k] - y[3 * o->free->first + k];
+  PetscCall(VecRestoreArrayRead(from, &y));
+  PetscCall(VecRestoreArrayRead(place, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void FreeBodiesRows(Obstacles o, PetscBool load, const PetscScalar x[], PetscScalar y[]) {
+void FreeBodiesRows(Obstacles o, const PetscReal load[], const PetscScalar x[], PetscScalar y[]) {
   const Layout l = o->layout;
-  (void)PetscArrayzero(y + 2 * l->n, FreeBodiesOwn(o));
-  if (load) FreeBodiesLoads(o, y);
+  for (PetscInt k = 0; k < FreeBodiesOwn(o); k++) y[2 * l->n + k] = load ? load[k] : 0;
   for (PetscInt b = l->own; b < l->end; b++) {
     if (!o->motion[b].free) continue;
     const BodyPose p = MotionPose(&o->motion[b], o->at);
@@ -63,7 +69,7 @@ void FreeBodyBalance(PetscInt n, const PetscReal X[], const PetscReal s[3], Pets
   }
 }
 
-PetscErrorCode FreeBodiesBalance(Obstacles o, PetscScalar F[]) {
+PetscErrorCode FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
   const Layout l = o->layout;
   PetscReal *X;
   PetscFunctionBeginUser;
@@ -72,7 +78,7 @@ PetscErrorCode FreeBodiesBalance(Obstacles o, PetscScalar F[]) {
     const PetscInt n = LayoutCount(l, b), at = 2 * LayoutOffset(l, b);
     const BodyPose p = MotionPose(&o->motion[b], o->at);
     if (!o->motion[b].free) continue;
-    const PetscReal *load = o->load + 3 * (o->motion[b].free - 1), s[] = {-load[0], -load[1], -load[2]};
+    const PetscReal *own = load + FreeBodyAt(o, b) - 2 * l->n, s[] = {-own[0], -own[1], -own[2]};
     for (PetscInt k = 0; k < 2 * n; k++) X[k] = o->X[2 * l->start[b] + k] - p.center[k % 2];
     FreeBodyBalance(n, X, s, F + at);
   }
@@ -119,6 +125,12 @@ PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal a0, Vec place) {
   for (PetscInt k = 0; k < 3 * o->free->M; k++) y[k] += q[k] / a0;
   PetscCall(VecRestoreArray(place, &y));
   PetscCall(PetscFree(q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FreeBodiesTurn(Obstacles o, Vec place, Vec force) {
+  PetscScalar *y;
+  PetscFunctionBeginUser;
   PetscCall(VecGetArray(force, &y));
   for (PetscInt b = o->layout->own; b < o->layout->end; b++)
     if (o->motion[b].turned && o->motion[b].free)

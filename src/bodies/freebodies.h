@@ -16,23 +16,24 @@
    Collective. */
 PETSC_EXTERN PetscErrorCode FreeBodiesCreateVecs(Obstacles obstacles, Vec *force, Vec *place);
 
-/* FreeBodiesRows - y += m R q and = R^T F, with the load where it is wanted. FreeBodiesLoads - y = load alone, at the
-   bodies' numbers. Not collective. */
-PETSC_EXTERN void FreeBodiesRows(Obstacles obstacles, PetscBool load, const PetscScalar x[], PetscScalar y[]);
-PETSC_EXTERN void FreeBodiesLoads(Obstacles obstacles, PetscScalar y[]);
+/* FreeBodiesRows - y += m R q and = R^T F + load[3 own free] (NULL: 0). FreeBodiesShift - d[3 own free] = place - from,
+   of own bodies. Not collective. */
+PETSC_EXTERN void FreeBodiesRows(Obstacles obstacles, const PetscReal load[], const PetscScalar x[], PetscScalar y[]);
+PETSC_EXTERN PetscErrorCode FreeBodiesShift(Obstacles obstacles, Vec place, Vec from, PetscReal d[]);
 
 /* FreeBodySum - sum[3] = R^T F of one body of n markers, X[2n] from its center. FreeBodyBalance - F += the rigid part
    by which R^T F becomes s[3]. FreeBodiesBalance - the same of own bodies where they have been placed, by which R^T F
-   becomes minus the load, of F[2w]. Not collective. */
+   becomes minus the load[3 own free], of F[2w]. Not collective. */
 PETSC_EXTERN void FreeBodySum(PetscInt n, const PetscReal X[], const PetscScalar F[], PetscReal sum[3]);
 PETSC_EXTERN void FreeBodyBalance(PetscInt n, const PetscReal X[], const PetscReal s[3], PetscScalar F[]);
-PETSC_EXTERN PetscErrorCode FreeBodiesBalance(Obstacles obstacles, PetscScalar F[]);
+PETSC_EXTERN PetscErrorCode FreeBodiesBalance(Obstacles obstacles, const PetscReal load[], PetscScalar F[]);
 
 /* FreeBodiesSpeed - the largest speed of a marker of own bodies that move with the q of such an array (length/time).
    Not collective. */
 PETSC_EXTERN PetscReal FreeBodiesSpeed(Obstacles obstacles, const PetscScalar x[]);
 
-/* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += q/a0, and the force
-   turns with the bodies from where they have been placed. Collective. */
+/* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += q/a0. FreeBodiesTurn - the
+   force turns with the bodies from where they have been placed to this place. Collective. */
 PETSC_EXTERN PetscErrorCode FreeBodiesRates(Obstacles obstacles, Vec force, PetscReal q[]);
 PETSC_EXTERN PetscErrorCode FreeBodiesMove(Obstacles obstacles, Vec force, PetscReal a0, Vec place);
+PETSC_EXTERN PetscErrorCode FreeBodiesTurn(Obstacles obstacles, Vec place, Vec force);

@@ -30,14 +30,29 @@ static void SpringSetLaw(const SceneRepulsion *law, PetscReal size, const PetscR
   }
 }
 
+/* A free body's part of a spring: its marker at X. */
+static void SpringAddBody(const BodyMotion *m, Instant at, PetscReal weight, const PetscReal X[2], Spring *s) {
+  const BodyPose p = MotionPose(m, at);
+  const PetscReal *n = s->normal;
+  s->body = m->free;
+  for (int c = 0; c < 2; c++) s->pull[c] += weight * n[c];
+  s->pull[2] += weight * ((X[0] - p.center[0]) * n[1] - (X[1] - p.center[1]) * n[0]);
+  s->beyond += weight * X[0];
+}
+
 /* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
-   is of an obstacle stays where it is. */
-static void SpringSetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spring *s) {
+   is of an obstacle stays where it is, unless it moves freely. */
+static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const CurveContact *c, Spring *s) {
+  const Layout all = r->bodies->layout;
   const PetscInt marker[3] = {c->point, c->edge[0], c->edge[1]};
   const PetscReal weight[3] = {1, c->at - 1, -c->at};
   *s = (Spring){.normal = {c->normal[0], c->normal[1]}, .distance = c->distance};
   for (int k = 0; k < 3; k++) {
-    if (marker[k] >= r->membrane->layout->M) continue;
+    if (marker[k] >= r->membrane->layout->M) {
+      const BodyMotion *m = &r->bodies->obstacles->motion[LayoutBody(all, marker[k]) - r->bodies->vesicles];
+      if (m->free) SpringAddBody(m, at, weight[k], X + 2 * marker[k], s);
+      continue;
+    }
     s->marker[s->n] = marker[k];
     s->weight[s->n++] = weight[k];
   }
@@ -64,7 +79,7 @@ static PetscInt FindWallSprings(Repulsion r, const PetscReal X[], Spring spring[
 }
 
 /* The springs at the curves X[2(M + W)]; to be freed. */
-static PetscErrorCode FindSprings(Repulsion r, const PetscReal X[], PetscInt *count, Spring **springs) {
+static PetscErrorCode FindSprings(Repulsion r, Instant at, const PetscReal X[], PetscInt *count, Spring **springs) {
   const Grid g = r->grid;
   const Layout l = r->membrane->layout, all = r->bodies->layout;
   PetscReal period[2];
@@ -75,7 +90,7 @@ static PetscErrorCode FindSprings(Repulsion r, const PetscReal X[], PetscInt *co
   const CurveSet set = {all->bodies, l->bodies, all->start, r->bodies->kind, X, period, PETSC_FALSE};
   PetscCall(CurveContacts(&set, RepulsionReach(&r->law), &n, &contact));
   PetscCall(PetscMalloc1(n + 4 * l->M, springs));
-  for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, X, &contact[k], &(*springs)[k]);
+  for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, at, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));
   *count = n + FindWallSprings(r, X, *springs + n);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -86,7 +101,7 @@ static PetscErrorCode RepulsionPlace(void *context, Instant at, const PetscReal 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(r->spring));
   PetscCall(BodiesSee(r->bodies, at, X, r->all));
-  PetscCall(FindSprings(r, r->all, &r->count, &r->spring));
+  PetscCall(FindSprings(r, at, r->all, &r->count, &r->spring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,14 +133,38 @@ static PetscErrorCode RepulsionKnown(void *context, PetscReal alpha, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, const PetscScalar V[],
+                               const PetscScalar q[], PetscScalar F[], PetscScalar b[]) {
+  const Repulsion r = (Repulsion)ForcesFind(forces, "contact");
+  const Obstacles o = r ? r->bodies->obstacles : NULL;
+  PetscReal *rates;
+  PetscFunctionBeginUser;
+  if (!o || !o->free->M) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(3 * o->free->M, &rates));
+  PetscCall(LayoutGather(o->free, 3, q, rates));
+  PetscCall(LayoutGather(r->membrane->layout, 2, V, r->all));
+  for (PetscInt k = 0; k < r->count; k++) {
+    const Spring *s = &r->spring[k];
+    const PetscInt at = 3 * (s->body - 1), own = at - 3 * o->free->first;
+    PetscReal along = 0;
+    if (!s->body) continue;
+    for (int c = 0; c < 3; c++) along += s->pull[c] * rates[at + c];
+    const PetscReal T = alpha * s->stiffness * (SpringStretch(s, r->all) + along) - (known ? s->push : 0);
+    if (F) SpringPull(s, r->membrane->layout, alpha * s->stiffness * along, F);
+    for (int c = 0; c < 3 && b && own >= 0 && own < FreeBodiesOwn(o); c++) b[own + c] += T * s->pull[c];
+  }
+  PetscCall(PetscFree(rates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const PetscScalar x[], PetscReal *sum) {
   const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(r->membrane->layout, 2, x, r->all));
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
-    PetscReal apart = -s->distance * s->normal[0];
-    if (s->n < 3) continue; /* of a wall or an obstacle */
+    PetscReal apart = s->beyond - s->distance * s->normal[0];
+    if (s->n < 3 && !s->body) continue; /* of a wall or an obstacle */
     for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
     *sum += (s->push - s->stiffness * SpringStretch(s, r->all)) * s->normal[0] * apart;
   }
@@ -142,7 +181,7 @@ static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[]
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, x, r->all));
   PetscCall(BodiesSee(r->bodies, at, r->all, r->all));
-  PetscCall(FindSprings(r, r->all, &count, &spring));
+  PetscCall(FindSprings(r, at, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];
     const PetscInt v = LayoutBody(l, s->marker[0]);

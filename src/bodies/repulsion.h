@@ -13,7 +13,9 @@
 #include "bodies/force.h"
 
 /* A point of a membrane against an edge or a wall: the distance changes by SUM weight_i normal.(X_i - X*_i), and the
-   force on X_i is (push - stiffness (the same sum of X_i instead of X_i - X*_i)) weight_i normal. */
+   force on X_i is (push - stiffness (the same sum of X_i instead of X_i - X*_i)) weight_i normal. Where a free body is
+   on the other side, it changes by pull.q as well, q the body's own change of place, and the force and torque on the
+   body are (push - ..) pull. */
 typedef struct {
   PetscInt n, marker[3];
   PetscReal weight[3], normal[2];
@@ -21,6 +23,9 @@ typedef struct {
   PetscReal stiffness; /* (length^2/time^2) */
   PetscReal push;      /* (length^3/time^2) */
   PetscReal energy;    /* at X* (length^4/time^2) */
+  PetscInt body;       /* number of the free body, from 1; 0: none */
+  PetscReal pull[3];
+  PetscReal beyond; /* SUM weight_i x_i of the body's markers (length) */
 } Spring;
 
 typedef struct _p_Repulsion *Repulsion;
@@ -33,3 +38,11 @@ struct _p_Repulsion {
   PetscInt count;
   PetscScalar *all; /* [2(M + W)] work */
 };
+
+/* RepulsionBodies - what the places of free bodies add, of the contact force among the forces, if there is one: with
+   minus the force of each spring T = alpha stiffness (SUM weight normal.V + pull.q), and less its push where it is
+   known,
+       F[2n own vesicles] += what q has of T, b[3 own free] += T pull,
+   of own V[2n], q[3 own free]; F or b NULL: not wanted. Collective. */
+PETSC_EXTERN PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, const PetscScalar V[],
+                                            const PetscScalar q[], PetscScalar F[], PetscScalar b[]);

@@ -130,7 +130,9 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
     PetscCall(VecGetArray(s->reduced->U, &k));
     PetscCall(MobilityAddLayers(s->coupling->mobility, q->known.F, NULL, k));
     PetscCall(PetscArraycpy(a + u->velocity, k + u->velocity, BodiesObstacleNumbers(s->coupling->bodies)));
-    FreeBodiesLoads(s->coupling->bodies->obstacles, a + u->velocity);
+    if (q->load)
+      PetscCall(PetscArraycpy(a + u->velocity + BodiesObstacleNumbers(s->coupling->bodies), q->load,
+                              FreeBodiesOwn(s->coupling->bodies->obstacles)));
     PetscCall(VecRestoreArray(s->reduced->U, &k));
   }
   UnknownsScale(u, PETSC_FALSE, a);

@@ -1,5 +1,6 @@
 #include "problem/coupling.h"
 #include "bodies/bending.h"
+#include "bodies/repulsion.h"
 
 PetscErrorCode CouplingCopyVesicles(Coupling c, Vec from, Vec to) {
   const PetscScalar *a;
@@ -96,7 +97,8 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, Vec F) {
+PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, const PetscReal shift[], Vec F,
+                                 PetscReal push[]) {
   const PetscScalar *x, *y, *s;
   PetscScalar *f;
   PetscFunctionBeginUser;
@@ -106,6 +108,7 @@ PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, Vec F) {
   PetscCall(VecGetArray(F, &f));
   PetscCall(ForcesRate(c->forces, 1, y, f));
   PetscCall(ForcesKnown(c->forces, 1, x, f));
+  PetscCall(RepulsionBodies(c->forces, PETSC_TRUE, 1, y, shift, f, push));
   if (sigma) {
     PetscCall(VecGetArrayRead(sigma, &s));
     LawForce(c->law, 1, s, f);

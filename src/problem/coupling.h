@@ -68,8 +68,11 @@ PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal a
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
 /* CouplingStepForce - F = K Y + k + Dm^T sigma, minus the forces at the markers Y, linearised at the markers X placed
-   (bodies/force.h), and the law's of sigma (NULL: without); F is zero behind the vesicles' part. Collective. */
-PETSC_EXTERN PetscErrorCode CouplingStepForce(Coupling coupling, Vec Y, Vec X, Vec sigma, Vec F);
+   (bodies/force.h), and the law's of sigma (NULL: without); F is zero behind the vesicles' part. shift[3 own free]: how
+   far free bodies are from where they have been placed, and minus the force of contact on them is added
+   to push[3 own free] (NULL: not wanted). Collective. */
+PETSC_EXTERN PetscErrorCode CouplingStepForce(Coupling coupling, Vec Y, Vec X, Vec sigma, const PetscReal shift[],
+                                              Vec F, PetscReal push[]);
 
 /* CouplingTread - U += alpha V dX/dt, the velocity of markers by the labels' own motion. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);

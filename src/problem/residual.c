@@ -36,6 +36,20 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (5) m R q, (6) R^T F + load + the force of contact; y: the rows of obstacles. */
+static PetscErrorCode ReducedBodies(Reduced s, const CoupledProblem *q, const PetscScalar x[], PetscScalar y[]) {
+  const Unknowns u = s->unknowns;
+  const Obstacles o = u->coupling->bodies->obstacles;
+  PetscScalar *push;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(FreeBodiesOwn(o), &push));
+  FreeBodiesRows(o, q ? q->load : NULL, x + u->velocity, y);
+  PetscCall(UnknownsPush(u, x, NULL, push));
+  for (PetscInt k = 0; k < FreeBodiesOwn(o); k++) y[2 * o->layout->n + k] -= push[k];
+  PetscCall(PetscFree(push));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The residual y of x in the equations of residual.h, scaled, where s->G has G and s->U has U (1) of x. With q NULL:
    what is linear in x, for a product with the operator. Collective. */
 static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const PetscScalar x[], PetscScalar y[]) {
@@ -55,7 +69,7 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   if (q) PetscCall(Subtract(q->k, markers, y));
   if (c->bodies->obstacles) { /* (5) beta N N^T F + m R q, (6) */
     ObstaclesRows(c->bodies->obstacles, x + n, y + n);
-    FreeBodiesRows(c->bodies->obstacles, q ? PETSC_TRUE : PETSC_FALSE, x + n, y + n);
+    PetscCall(ReducedBodies(s, q, x, y + n));
   }
   LawRows(c->law, x, x + edges, y + edges); /* (4) Dm V/h^2 - g */
   if (q) PetscCall(Subtract(q->g, u->edges, y + edges));

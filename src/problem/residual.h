@@ -6,7 +6,7 @@
             G = V + (v/a0) dV/dt + known
        (4)  Dm V/h^2 = g                                        inextensible edges
        (5)  U - beta N N^T F - m R q + k = 0                    no slip on obstacles, whose F is unknown
-       (6)  R^T F + load = 0                                    obstacles that move freely, with the velocity q
+       (6)  R^T F + load + contact = 0                          obstacles that move freely, with the velocity q
 
    V is the markers' velocity without the background's, seen from labels that turn at the speed v of their vesicle; G is
    their motion; K is what the forces change by with their markers (bodies/force.h); k is the background's velocity,
@@ -26,7 +26,8 @@ typedef struct {
   MobilityKnown known; /* what is known of the velocity; its forcing gets all forces of the solution */
   Vec g, k;            /* right-hand sides of the rows Dm V/h^2 (edge vector) and of velocities (all bodies' markers) */
   PetscBool graded;    /* the step is a part of a graded start */
-  Vec sigma, V, solid; /* tension, V and force on obstacles (NULL without): first guess and solution */
+  const PetscReal *load; /* [3 own free] known force and torque on free bodies; NULL without */
+  Vec sigma, V, solid;   /* tension, V and force on obstacles (NULL without): first guess and solution */
 } CoupledProblem;
 
 typedef struct _p_Reduced *Reduced;

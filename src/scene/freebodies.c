@@ -50,8 +50,6 @@ static PetscErrorCode FreeBodiesCheckScene(Scene s) {
   const SceneRule rules[] = {
     {inertia != INERTIA_AUTO && inertia != INERTIA_NONE,
      "-obstacle_free {-obstacle_free}: not with -fluid_inertia {-fluid_inertia}; allowed: none"},
-    {s->repulsion.stress > 0 && s->shape.vesicles,
-     "-obstacle_free {-obstacle_free}: not with -contact_repulsion {-contact_repulsion}, whose push on vesicles free bodies would not feel; allowed: 0"},
     {s->scheme.wanted > 0,
      "-obstacle_free {-obstacle_free}: not with -scheme_auto {-scheme_auto}, which was not measured for it; allowed: 0"},
     {FluidSpecIsFree(&s->fluid) && PetscMax(PetscAbsReal(sum[0]), PetscAbsReal(sum[1])) > 1e-9 * most,

@@ -46,6 +46,17 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where free bodies are without their q: the history of their places, and its way from where they have been placed. No
+   load yet. next.place is used for it. */
+static PetscErrorCode KnownLoads(Scheme s, Coupled *d, const BDF *b) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  PetscFunctionBeginUser;
+  PetscCall(HistorySum(b->order, b->history, 1 / b->a0, STATES(s, place), d->next.place));
+  PetscCall(FreeBodiesShift(o, d->next.place, d->place, d->shift));
+  PetscCall(PetscArrayzero(d->load, FreeBodiesOwn(o)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* f = uhat - N(w*), minus the known forces F at Y = Xhat + u_inf/a0, the known motion u_inf + v dY/dt with the labels'
    speed v, and k, u_inf less the obstacles' velocity. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
@@ -56,7 +67,10 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(ForcingClear(f));
   PetscCall(Past(s, d, b));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->force));
+  if (d->place) PetscCall(KnownLoads(s, d, b));
+  PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->shift, d->force, d->load));
+  for (PetscInt k = 0; d->place && k < FreeBodiesOwn(obstacles); k++)
+    d->load[k] = obstacles->load[3 * obstacles->free->first + k] - d->load[k];
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
   PetscCall(VecCopy(s->background, d->moved));
   PetscCall(CouplingTread(s->coupling, 1, d->Y, d->moved));
@@ -80,7 +94,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
   if (n->place) {
     PetscCall(VecGetArray(n->solid, &F));
-    PetscCall(FreeBodiesBalance(s->coupling->bodies->obstacles, F));
+    PetscCall(FreeBodiesBalance(s->coupling->bodies->obstacles, d->load, F));
     PetscCall(VecRestoreArray(n->solid, &F));
   }
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
@@ -103,6 +117,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
                                   .sigma = n->sigma,
                                   .V = d->V,
                                   .solid = n->solid,
+                                  .load = d->load,
                                   .graded = d->graded};
   SolveReport report;
   PetscFunctionBeginUser;
@@ -123,10 +138,14 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt. */
+/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt; free bodies by the same formula. */
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
+  if (n->place) {
+    PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, a0, n->place));
+    PetscCall(FreeBodiesShift(s->coupling->bodies->obstacles, n->place, d->place, d->shift));
+  }
   if (n->p)
     PetscCall(SchemeMeasureDivergence(s, n->w, NULL));
   else
@@ -139,14 +158,6 @@ static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Free bodies by the same formula. */
-static PetscErrorCode MoveBodies(Scheme s, Coupled *d, const BDF *b) {
-  PetscFunctionBeginUser;
-  PetscCall(HistorySum(b->order, b->history, 1 / b->a0, STATES(s, place), d->next.place));
-  PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, d->next.solid, b->a0, d->next.place));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the forces of the step, which are spread at X*, and the jump do to a sheared channel. d->known is used for the
    forces. */
 static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
@@ -156,7 +167,7 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   PetscScalar *F;
   PetscFunctionBeginUser;
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingStepForce(s->coupling, n->X, d->Xstar, n->sigma, d->known));
+  PetscCall(CouplingStepForce(s->coupling, n->X, d->Xstar, n->sigma, d->shift, d->known, NULL));
   if (n->place) {
     PetscCall(VecGetArray(d->known, &F));
     PetscCall(VecGetArrayRead(n->solid, &solid));
@@ -302,7 +313,7 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MoveMarkers(s, d, b.a0));
   PetscCall(MeasureStress(s, d));
-  if (d->place) PetscCall(MoveBodies(s, d, &b));
+  if (d->place) PetscCall(FreeBodiesTurn(s->coupling->bodies->obstacles, d->next.place, d->next.solid));
   PetscCall(ChooseNext(s, d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 /* The scheme "coupled": the unsplit step, unconditionally stable, solved by preconditioned FGMRES on its forces. Here:
    which steps are taken. */
 #include "scheme/coupled.h"
+#include "bodies/freebodies.h"
 #include "scheme/films.h"
 
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
@@ -230,7 +231,11 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(CreateStates_Coupled(s));
   PetscCall(HistoryCreate(s, &d->history));
   for (int i = 0; i < 7; i++) PetscCall(VecDuplicate(s->state.X, markers[i]));
-  if (s->state.place) PetscCall(VecDuplicate(s->state.place, &d->place));
+  if (s->state.place) {
+    const PetscInt own = FreeBodiesOwn(s->coupling->bodies->obstacles);
+    PetscCall(VecDuplicate(s->state.place, &d->place));
+    PetscCall(PetscMalloc2(own, &d->load, own, &d->shift));
+  }
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
@@ -247,6 +252,7 @@ static PetscErrorCode Destroy_Coupled(Scheme s) {
   PetscCall(HistoryDestroy(&d->history));
   for (int i = 0; i < 10; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->made_with));
+  PetscCall(PetscFree2(d->load, d->shift));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -136,6 +136,20 @@ def test_an_inclusion(case, tmp_path):
     balanced(series, 1)
 
 
+def test_contact_with_a_vesicle_is_equal_and_opposite(tmp_path):
+    """A disc that is pulled into a vesicle: what it bears less than its load, the vesicle bears; the same on 3 ranks."""
+    options = f"{PERIODIC} -domain_box -1,1,-1,1 -domain_cells 48,48 -vesicle_center .2,.05 -vesicle_area .2"
+    options += " -vesicle_reduced_area .9 -vesicle_angle 90 -obstacle_shape posts -obstacle_free all -obstacle_radius .2"
+    options += " -obstacle_center -.27,0 -obstacle_force 6,0 -contact_repulsion 100 -contact_repulsion_range .1"
+    options += " -time_step .02 -output_overwrite"
+    names = ("gap", "center_x", "coupled_its", "obstacle_rotation_1", "obstacle_force_x_1", "pressure_drop")
+    series = agree(tmp_path, options, 0.2, 0.4, names, (3,), rel=1e-8)["whole"].series
+    borne = series["obstacle_force_x_1"] + 6
+    assert borne[0] > 2 and series["gap"].min() > 0.05
+    balance = 2 * series["pressure_drop"] + 6  # of all forces on the fluid
+    assert abs(balance[0]) < 1e-10 and np.abs(balance).max() < 1e-3
+
+
 SHEARED = "-domain_box 0,4,0,4 -domain_bc_x periodic -flow_type shear -obstacle_shape posts -obstacle_free all"
 
 
