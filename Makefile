@@ -89,13 +89,16 @@ $(BUILD)/base/version.o: $(BUILD)/.commit
 $(BUILD)/base/version.o: CFLAGS += -DPETVES_COMMIT='"$(COMMIT)"' -DPETVES_ARCH='"$(FOR)"'
 $(BUILD)/app/program.o: CFLAGS += -DPETVES_PYTHON='"$(PYTHON)"'
 
+# A line for each file; V=1 shows the commands.
+say = $(if $(V),,@echo "$(1) $@";)
+
 $(BUILD)/%.o: src/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
+	$(call say,compile)$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
 
 $(LIBRARY): $(OBJECTS)
 	@mkdir -p $(@D)
-	$(CC) $(OPTIMISE) -shared -o $@ $^ $(LIBS)
+	$(call say,link)$(CC) $(OPTIMISE) -shared -o $@ $^ $(LIBS)
 
 # The loader looks each name that a library asks for up in one library after the other. Those that Debian's PETSc brings with
 # most names stand first: a fifth of the start.
@@ -104,7 +107,7 @@ LOADED = $(if $(PETSC_DIR),,$(shell ldd $(LIBRARY)))
 FIRST = $(foreach name,$(MANY_NAMES),$(foreach file,$(filter /%,$(LOADED)),$(if $(findstring /lib$(name).so,$(file)),$(file))))
 $(BIN)/petves: $(BUILD)/app/main.o $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR):$$ORIGIN/../lib' $(LIBS)
+	$(call say,link)$(CC) $(OPTIMISE) -o $@ $< -Wl,--push-state,--no-as-needed $(FIRST) -Wl,--pop-state -L$(LIBDIR) -lpetves -Wl,-rpath,'$$ORIGIN/../$(LIBDIR):$$ORIGIN/../lib' $(LIBS)
 
 # What a program has of tests/support.
 $(BUILD)/tests/test_direct: SUPPORT := $(wildcard tests/support/*direct*.c)
@@ -113,11 +116,11 @@ $(BUILD)/tests/test_direct: $(wildcard tests/support/*direct*)
 vpath %.c $(sort $(dir $(TEST_SOURCES)))
 $(BUILD)/tests/%: %.c $(wildcard tests/support/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -Itests/support -o $@ $< $(SUPPORT) -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+	$(call say,compile)$(CC) $(CFLAGS) -Itests/support -o $@ $< $(SUPPORT) -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
 $(BUILD)/bench/%: bench/%.c bench/bench.h $(wildcard tests/support/*.h) $(CODE) | $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -Itests/support -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
+	$(call say,compile)$(CC) $(CFLAGS) -Itests/support -Ibench -o $@ $< -L$(LIBDIR) -lpetves -Wl,-rpath,$(CURDIR)/$(LIBDIR) $(LIBS)
 
 tests: $(TESTS) $(BENCHES)
 benches: $(BENCHES)
@@ -148,7 +151,7 @@ $(BUILD)/site-tools/.packages: packaging/site.txt
 	  || echo "$< is not to be had from PyPI: no site"
 
 run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
-	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory -j$(shell nproc) all
 	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_dir $(OUT) -output_overwrite
 	PYTHONPATH=python $(PYTHON) -m petves plot $(OUT)
 

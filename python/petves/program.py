@@ -73,8 +73,8 @@ def command() -> list[str]:
 
 
 def scene_files() -> dict[str, Path]:
-    """Return the scenes that come with petves by name: of the repository, or where make install has put them."""
-    prefixes = [*PACKAGE.parents[1:6], *_of_command(), Path("/usr/local")]
+    """Return the scenes that come with petves by name: of the package (pip), the repository, or where make install has put them."""
+    prefixes = [PACKAGE, *PACKAGE.parents[1:6], *_of_command(), Path("/usr/local")]
     folders = [folder for prefix in prefixes for folder in (prefix / "runs", prefix / "share" / "petves" / "runs")]
     folder = next((folder for folder in folders if (folder / "default.opts").is_file()), PACKAGE)
     return {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.opts"))}

@@ -92,6 +92,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         shutil.copytree(ROOT / "python", tmp_path / "tree" / "python", ignore=shutil.ignore_patterns("__pycache__"))
         (tmp_path / "tree" / "lib").mkdir()
         shutil.copy(LIBRARY, tmp_path / "tree" / "lib")
+        shutil.copytree(ROOT / "runs", tmp_path / "tree" / "runs")
         words = [
             "-m",
             "pip",
@@ -114,7 +115,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
             and (home / "py.typed").is_file()
             and not (tmp_path / "site" / "studies").exists()
         )
-        words = f"run -domain_cells 24,24 -time_end 0.01 -output_dir {tmp_path / 'out'}".split()
+        words = f"run stirring -time_end 0 -output_dir {tmp_path / 'out'}".split()
         done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
         assert done.returncode == 0 and (tmp_path / "out" / "run.h5").is_file(), (
             "pip's command has the program\n" + done.stderr
