@@ -91,7 +91,7 @@ static PetscErrorCode TablePrintVesicles(MPI_Comm comm, const Summary *s, PetscI
     PetscCall(PetvesSay(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
                         (double)r[COLUMN_LENGTH_ERROR]));
   else
-    PetscCall(PetvesSay(comm, "  area error, change of length   %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
+    PetscCall(PetvesSay(comm, "  area error, change of length  %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
                         (double)r[COLUMN_LENGTH_ERROR]));
   PetscCall(PetvesSay(comm, "  inclination (radians)         %.6f\n", (double)r[COLUMN_INCLINATION]));
   if (!PetscIsNanReal(r[COLUMN_FREQUENCY]))

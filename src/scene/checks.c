@@ -66,14 +66,18 @@ static PetscErrorCode SceneCheckLengths(Scene s) {
 PetscErrorCode SceneCheckCells(Scene s) {
   const PetscReal *b = s->domain.box.v, nx = s->domain.cells.v[0], ny = s->domain.cells.v[1];
   const PetscReal hx = (b[1] - b[0]) / nx, hy = (b[3] - b[2]) / ny;
-  const PetscReal far = PetscMax(PetscMax(-b[0], b[1]), PetscMax(-b[2], b[3])) / hx;
+  const PetscReal far = PetscMax(PetscMax(-b[0], b[1]), PetscMax(-b[2], b[3])) / hx, ratio = (b[3] - b[2]) / (b[1] - b[0]);
+  PetscReal fit = nx; /* cells in x, at least as many, with which those in y are a whole number */
+  while (fit < 4 * nx && PetscAbsReal(fit * ratio - PetscFloorReal(fit * ratio + 0.5)) > 1e-10 * fit) fit++;
   const SceneRule rules[] = {
     {far * PETSC_MACHINE_EPSILON >= 1e-6,
      "-domain_box {-domain_box}: reaches %.2g cells from 0,0, where places are rounded to 1e-6 cells or more; allowed: a box nearer to 0,0", {far}},
     {2 * nx * ny >= (PetscReal)PETSC_MAX_INT,
      "-domain_cells {-domain_cells}: %.3g cells are more than this PETSc can number; allowed: at most %.3g in all", {nx * ny, PETSC_MAX_INT / 2}},
+    {PetscAbsReal(hx - hy) > 1e-10 * hx && fit >= 4 * nx,
+     "-domain_cells {-domain_cells}: cells of %g x %g; allowed: square cells, so a -domain_box whose sides are in a simple ratio", {hx, hy}},
     {PetscAbsReal(hx - hy) > 1e-10 * hx,
-     "-domain_cells {-domain_cells}: cells of %g x %g; allowed: square cells, for this -domain_box %g cells in y", {hx, hy, (b[3] - b[2]) / hx}}};
+     "-domain_cells {-domain_cells}: cells of %g x %g; allowed: square cells, in this -domain_box such as %.0f,%.0f", {hx, hy, fit, fit * ratio}}};
   return REFUSE(s, rules);
 }
 /* clang-format on */

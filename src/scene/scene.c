@@ -4,14 +4,6 @@
 #include "scene/checks.h"
 #include "scene/vesicles.h"
 
-/* The user's lists, whose lengths have been checked, and the flow, for the fluid. */
-static void SceneDescribeFluid(Draft s) {
-  s->fluid.comm = s->comm;
-  for (int k = 0; k < 4; k++) s->fluid.box[k] = s->domain.box.v[k];
-  for (int d = 0; d < 2; d++) s->fluid.cells[d] = s->domain.cells.v[d];
-  s->fluid.flow = &s->flow;
-}
-
 /* Penalty's springs, where none are given: half of what the step bears. */
 static void SceneChooseStiffness(Draft s) {
   const PetscReal h = FluidSpecCellSize(&s->fluid), dt = s->time.dt;
@@ -45,7 +37,10 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->flow.function = flow;
   s->flow.ctx = ctx;
   if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(comm, &s->flow));
-  SceneDescribeFluid(s);
+  s->fluid.comm = s->comm;
+  s->fluid.flow = &s->flow;
+  for (int k = 0; k < 4; k++) s->fluid.box[k] = s->domain.box.v[k]; /* a list whose length has been checked */
+  for (int d = 0; d < 2; d++) s->fluid.cells[d] = s->domain.cells.v[d];
   /* 6  the vesicles, the obstacles, the flow from numbers that go by their size, the markers with the kernel's spacing
    * if none is given
    */

@@ -116,7 +116,7 @@ static PetscBool TextHas(const char *text, const char *word) {
    has the word names the option. */
 static int OptionAnswers(const OptionRow *row, const char *word) {
   char help[OPTION_HELP];
-  if (!word || strcasestr(row->name, word)) return 2;
+  if (!word || TextHas(row->name, word)) return 2;
   OptionHelpText(row, scene_defaults, help);
   if (TextHas(help, word) || TextHas(row->range, word)) return 1;
   for (const OptionSuggestion *s = suggestions; s->names; s++)
