@@ -85,10 +85,9 @@ def lines(**given: object) -> list[str]:
     """Return what `numbers` finds as a file of options, the numbers in comments; parameters are those of `numbers`."""
     options, found = numbers(**given)
     words = [f"{name} = {value:.4g}" + " s" * (name == "lambda_t") for name, value in found.items()]
-    told = f"# {', '.join(words)}; metres and seconds, density 1"
     late = "# Re is not small: -fluid_inertia, in a box with walls or periods, has inertia"
     return [
-        told,
+        f"# {', '.join(words)}; metres and seconds, density 1",
         *[late] * (found["Re"] > 0.1),
         *(f"-{name} {value}" for name, value in options.items()),
         "-output_dir out/numbers",

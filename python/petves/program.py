@@ -24,7 +24,6 @@ OPEN_MPI = {
 }
 """What Open MPI needs as root, on more ranks than cores and in containers; one rank without mpirun starts no daemon."""
 
-
 PACKAGE = Path(__file__).resolve().parent
 
 
