@@ -12,9 +12,13 @@ typedef struct {
 
 typedef struct {
   Membrane membrane;  /* borrowed */
-  MomentPoint *point; /* [TIMES n] of the own vesicles, where the force is placed */
+  MomentPoint *point; /* [TIMES M] of all vesicles, where the force is placed: dense blocks may be of any of them */
   PetscScalar *at;    /* [2n] grad E_B - N X* at the own markers */
 } Moment;
+
+static MomentPoint *MomentPointsOf(const Moment *o, PetscInt v) {
+  return o->point + TIMES * o->membrane->layout->start[v];
+}
 
 static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a[2], const PetscReal b[2]) {
   const PetscReal q = PetscSqr(a[0]) + PetscSqr(a[1]), lambda = PetscSqrtReal(q);
@@ -110,13 +114,11 @@ static PetscErrorCode MomentPlace(void *context, Instant t, const PetscReal X[])
   const Layout l = m->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(o->at, 2 * l->n));
+  for (PetscInt v = 0; v < l->bodies; v++) PetscCall(MomentPoints(m, v, X + 2 * l->start[v], MomentPointsOf(o, v)));
   for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscReal *own = X + 2 * l->start[v];
-    const PetscInt at = LayoutOffset(l, v);
-    MomentPoint *point = o->point + TIMES * at;
-    PetscCall(MomentPoints(m, v, own, point));
-    PetscCall(MomentAdd(m, v, 1, point, NULL, o->at + 2 * at));
-    PetscCall(MomentAdd(m, v, -1, point, own, o->at + 2 * at));
+    PetscScalar *at = o->at + 2 * LayoutOffset(l, v);
+    PetscCall(MomentAdd(m, v, 1, MomentPointsOf(o, v), NULL, at));
+    PetscCall(MomentAdd(m, v, -1, MomentPointsOf(o, v), X + 2 * l->start[v], at));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,7 +130,7 @@ static PetscErrorCode MomentRate(void *context, PetscReal alpha, const PetscScal
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt at = LayoutOffset(l, v);
-    PetscCall(MomentAdd(m, v, alpha, o->point + TIMES * at, V + 2 * at, F + 2 * at));
+    PetscCall(MomentAdd(m, v, alpha, MomentPointsOf(o, v), V + 2 * at, F + 2 * at));
     MembraneVesicleBending(m, v, -alpha * m->bending, V + 2 * at, F + 2 * at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -150,7 +152,7 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
   PetscCall(PetscCalloc1(2 * n, &unit));
   for (PetscInt k = 0; k < 2 * n; k++) {
     unit[k] = 1;
-    PetscCall(MomentAdd(m, v, alpha, o->point + TIMES * LayoutOffset(m->layout, v), unit, K + 2 * n * k));
+    PetscCall(MomentAdd(m, v, alpha, MomentPointsOf(o, v), unit, K + 2 * n * k));
     MembraneVesicleBending(m, v, -alpha * m->bending, unit, K + 2 * n * k);
     unit[k] = 0;
   }
@@ -203,7 +205,7 @@ PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *
   if (m->moment == MOMENT_QUADRATIC || m->bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&o));
   o->membrane = m;
-  PetscCall(PetscCalloc2(TIMES * m->layout->n, &o->point, 2 * m->layout->n, &o->at));
+  PetscCall(PetscCalloc2(TIMES * m->layout->M, &o->point, 2 * m->layout->n, &o->at));
   *force = (Force){.name = "bending",
                    .reach = FORCE_WITHIN,
                    .context = o,

@@ -2,12 +2,10 @@
 
 /* n[2n] outward unit normals of one vesicle; length[n] shares of its length. */
 static void SeepageNormals(Membrane m, PetscInt v, const PetscReal X[], PetscReal n[], PetscReal length[]) {
-  MembraneTangents(m, v, v + 1, X, n);
+  MembraneAreaGradient(m, v, X, n);
   for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++) {
-    const PetscReal x = n[2 * k], y = n[2 * k + 1], size = PetscHypotReal(x, y);
-    length[k] = size * m->ds[v];
-    n[2 * k] = y / size;
-    n[2 * k + 1] = -x / size;
+    length[k] = PetscHypotReal(n[2 * k], n[2 * k + 1]);
+    for (int c = 0; c < 2; c++) n[2 * k + c] /= length[k];
   }
 }
 

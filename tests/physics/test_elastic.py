@@ -239,6 +239,18 @@ def test_water_inflates_a_circle(tmp_path):
     assert error[3, 10] < 2e-5 and error[3, 20] < error[3, 10] / 6
 
 
+@pytest.mark.parametrize("derivative", ["fd", "bending", "spectral"])
+def test_water_passes_along_normals(tmp_path, derivative):
+    """A circle at rest that water inflates does not turn: each marker goes outward."""
+    circle = (
+        f"{FREE} -vesicle_semi_axes 1,1 -vesicle_bending 0 {stretched('hooke', 2.0)} -membrane_derivative {derivative}"
+    )
+    water = "-membrane_permeability 0.3 -membrane_osmotic 3,1.2 -time_step 0.1 -time_end 0.5"
+    X = run_petves(tmp_path, f"{circle} {water}").saved("vesicle/markers", "run.h5")
+    first, last = X[0, :, 0] + 1j * X[0, :, 1], X[-1, :, 0] + 1j * X[-1, :, 1]
+    assert (abs(last) > 1.1).all() and abs(np.angle(last / first)).max() < 1e-8
+
+
 def test_water_passes_without_near_field(tmp_path):
     """What the pressure drives back does not hang on the near field: the same area in a box of four walls."""
     circle = f"-domain_box -3,3,-3,3 -domain_cells 48,48 -fluid_inertia none -vesicle_semi_axes 1,1 {stretched('hooke', 2.0)}"
@@ -271,6 +283,19 @@ def test_two_permeable_vesicles(tmp_path):
     water = "-vesicle_bending .05 -membrane_permeability 0.2 -membrane_osmotic 1,.5"
     found = agree(tmp_path, f"{pair} {water}", 0.2, 0.4, ("center_x_1", "area_2", "inclination_2"), (3,))
     assert found["whole"].series["coupled_its"][2:].mean() < 5
+
+
+@pytest.mark.parametrize("moment", ["angle", "helfrich"])
+def test_bending_of_stretched_membranes_on_ranks(tmp_path, moment):
+    """More ranks than vesicles: the dense block of both is on one rank, the places where they bend on others."""
+    agree(
+        tmp_path,
+        f"{TWO} -membrane_stretching 2 -membrane_moment {moment}",
+        0.1,
+        0.2,
+        ("inclination_2", "length_1"),
+        (2, 3),
+    )
 
 
 def test_ranks_restart_and_mixtures(tmp_path):
