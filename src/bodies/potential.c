@@ -3,17 +3,23 @@
 typedef struct {
   Membrane membrane; /* borrowed */
   ScenePotential law;
-  PetscReal period[2]; /* 0: none */
-  PetscScalar *all;    /* [2M] work */
-  PetscScalar *at;     /* [2n] minus the force where it is placed */
-  PetscReal seams;     /* part of ForcesSeams, of the own markers, there */
+  PetscReal period[2], over_period[2]; /* and its inverse; both 0: none */
+  PetscScalar *all;                    /* [2M] work */
+  PetscScalar *at;                     /* [2n] minus the force where it is placed */
+  PetscReal seams;                     /* part of ForcesSeams, of the own markers, there */
 } Potential;
 
-/* phi of points at a distance z, and its slope over z. */
-static PetscReal PotentialOf(const ScenePotential *law, PetscReal z, PetscReal *slope) {
-  const PetscReal m = law->exponents.v[0], n = law->exponents.v[1];
-  const PetscReal high = PetscPowReal(law->distance / z, m), low = PetscPowReal(law->distance / z, n);
-  *slope = -law->strength * m * (high - low) / PetscSqr(z);
+/* x^p, by products where p is an integer. */
+static PetscReal PotentialPower(PetscReal x, PetscReal p) {
+  const int n = (int)p;
+  return p == n ? PetscPowRealInt(x, n) : PetscPowReal(x, p);
+}
+
+/* phi of points at the square z2 of a distance z, and its slope over z. */
+static PetscReal PotentialOf(const ScenePotential *law, PetscReal z2, PetscReal *slope) {
+  const PetscReal m = law->exponents.v[0], n = law->exponents.v[1], x = PetscSqr(law->distance) / z2;
+  const PetscReal low = PotentialPower(x, n / 2), high = m == 2 * n ? low * low : PotentialPower(x, m / 2);
+  *slope = -law->strength * m * (high - low) / z2;
   return law->strength * (high - m / n * low);
 }
 
@@ -25,21 +31,27 @@ static PetscReal PotentialAdd(const Potential *o, PetscReal alpha, const PetscSc
   const Layout l = m->layout;
   PetscReal seams = 0;
   for (PetscInt v = l->own; v < l->end; v++)
-    for (PetscInt w = 0; w < l->bodies; w++)
-      for (PetscInt i = l->start[v]; i < l->start[v + 1] && w != v; i++)
+    for (PetscInt w = 0; w < l->bodies; w++) {
+      const PetscBool both = w >= l->own && w < l->end ? PETSC_TRUE : PETSC_FALSE; /* are own: the pair is met once */
+      const PetscReal half = 0.5 * m->ds[v] * m->ds[w];
+      for (PetscInt i = l->start[v]; i < l->start[v + 1] && w != v && !(both && w < v); i++)
         for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
-          const PetscReal size = m->ds[v] * m->ds[w];
           PetscReal r[2], apart[2], slope;
           for (int c = 0; c < 2; c++) {
             r[c] = X[2 * i + c] - X[2 * j + c];
-            apart[c] = o->period[c] > 0 ? o->period[c] * PetscFloorReal(r[c] / o->period[c] + 0.5) : 0;
+            apart[c] = o->period[c] * rint(r[c] * o->over_period[c]);
             r[c] -= apart[c];
           }
-          const PetscReal phi = PotentialOf(&o->law, PetscSqrtReal(r[0] * r[0] + r[1] * r[1]), &slope);
-          if (E) E[v] += 0.5 * size * phi;
-          for (int c = 0; c < 2 && F; c++) F[2 * (i - l->first) + c] -= alpha * size * slope * r[c];
-          seams -= 0.5 * size * slope * r[0] * apart[0];
+          const PetscReal phi = PotentialOf(&o->law, r[0] * r[0] + r[1] * r[1], &slope);
+          if (E) E[v] += half * phi;
+          if (E && both) E[w] += half * phi;
+          for (int c = 0; c < 2 && F; c++) {
+            F[2 * (i - l->first) + c] -= 2 * alpha * half * slope * r[c];
+            if (both) F[2 * (j - l->first) + c] += 2 * alpha * half * slope * r[c];
+          }
+          seams -= (both ? 2 : 1) * half * slope * r[0] * apart[0];
         }
+    }
   return seams;
 }
 
@@ -99,7 +111,11 @@ PetscErrorCode ForceCreate_Potential(Bodies bodies, Grid grid, Scene scene, Forc
   PetscCall(PetscNew(&o));
   o->membrane = bodies->membrane;
   o->law = scene->potential;
-  for (int d = 0; d < 2; d++) o->period[d] = grid->wall[d] || grid->free ? 0 : grid->hi[d] - grid->lo[d];
+  for (int d = 0; d < 2 && !grid->free; d++) {
+    if (grid->wall[d]) continue;
+    o->period[d] = grid->hi[d] - grid->lo[d];
+    o->over_period[d] = 1 / o->period[d];
+  }
   PetscCall(PetscMalloc2(2 * l->M, &o->all, 2 * l->n, &o->at));
   *force = (Force){.name = "contact",
                    .reach = FORCE_BETWEEN,
