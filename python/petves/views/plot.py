@@ -147,7 +147,7 @@ def _draw_course(
     axes: Axes, time: np.ndarray, values: np.ndarray, color: str, label: str | None, at_rest: bool
 ) -> None:
     """Draw a quantity against time, at rest with its last value as a dotted line and a number."""
-    axes.plot(time, values, color=color, label=label)
+    axes.plot(time, values, "-" if color == "C0" else "--", color=color, label=label)  # one may hide another
     if at_rest and np.isfinite(values[-1]):
         steady = values[-1]
         axes.axhline(steady, color=color, ls=":", lw=1)
