@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 #: Units of what a run has, in the user's lengths and times; "1" is a number, "" not a physical quantity.
 _HAVE = {
-    "1": "viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
+    "1": "stretch viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
     "time": "time dt step_time",
     "length": "gap length center_x center_y area_shift markers tracers obstacles obstacle_center_x obstacle_center_y x y h",
@@ -54,7 +54,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
     xarray.Dataset or Run
         Dataset: variables of the steps (dimension step) are the columns of series.csv, with the coordinate step_time;
         variables of the saved times (dimension time) are u, v, p (time, y, x), markers and
-        velocity (time, marker, xy), tension (time, marker), with the coordinate vesicle of each marker, 1 for the first, and tracers (time, tracer, xy);
+        velocity (time, marker, xy), tension and stretch (time, marker), with the coordinate vesicle of each marker, 1 for the first, and tracers (time, tracer, xy);
         obstacles (obstacle_marker, xy), where they move (time, obstacle_marker, xy), and obstacle_force (time,
         obstacle_marker, xy), where there are any, with the coordinate obstacle. p is without the mean gradient along x,
         which is pressure_gradient (time): `petves.quantities.total_pressure` has both. Above 40 vesicles each_area, ...
@@ -98,6 +98,7 @@ def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
         "markers": (("time", "marker", "xy"), run.markers),
         "velocity": (("time", "marker", "xy"), run.velocity),
         "tension": (("time", "marker"), run.tension),
+        "stretch": (("time", "marker"), run.stretch),
     }
     coordinates = {
         "step": run.series["step"].astype(int),

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from petves.run import Run, RunError, centroid
+from petves.run import Run, RunError
 
 
 def stresslets(run: Run, frame: int) -> np.ndarray:
@@ -55,9 +55,8 @@ def area_fraction_profile(run: Run, frame: int, layers: int = 20) -> tuple[np.nd
 
 def centers(run: Run) -> np.ndarray:
     """Return the centroids of all vesicles of `run` at the saved times, shape (T, vesicles, 2); seams are not folded back."""
-    return np.array(
-        [[centroid(run.outline(frame, v)) for v in range(run.vesicles)] for frame in range(len(run.time))]
-    ).reshape(len(run.time), run.vesicles, 2)
+    found = [run.centroid(frame, v) for frame in range(len(run.time)) for v in range(run.vesicles)]
+    return np.reshape(found, (len(run.time), run.vesicles, 2))
 
 
 def mean_square_displacement(run: Run) -> tuple[np.ndarray, np.ndarray]:

@@ -52,8 +52,8 @@ class Run:
         Mean gradient of the pressure along x (length/time^2), which is not in the p of `fields`.
     markers, velocity : ndarray, shape (T, M, 2)
         Markers (length) and their velocity (length/time); M = 0 without a vesicle.
-    tension : ndarray, shape (T, M)
-        Tension; entry k is on the edge from marker k-1 to marker k, or at marker k with spectral edges.
+    tension, stretch : ndarray, shape (T, M)
+        Tension, and length over that at rest; entry k is on the edge from marker k-1 to marker k, or at marker k with spectral edges.
     start : ndarray, shape (vesicles + 1,)
         First marker of each vesicle, and the number of markers.
     viscosity_ratio : ndarray, shape (vesicles,)
@@ -90,6 +90,7 @@ class Run:
     markers: np.ndarray
     velocity: np.ndarray
     tension: np.ndarray
+    stretch: np.ndarray
     start: np.ndarray
     viscosity_ratio: np.ndarray
     bending: np.ndarray
@@ -225,10 +226,8 @@ class Run:
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (nx,), and y, shape (ny,), of the cell centres."""
-        return tuple(
-            self.box[2 * d] + self.h * (0.5 + np.arange(round((self.box[2 * d + 1] - self.box[2 * d]) / self.h)))
-            for d in range(2)
-        )
+        sides = np.reshape(self.box, (2, 2))
+        return tuple(low + self.h * (0.5 + np.arange(round((high - low) / self.h))) for low, high in sides)
 
     def outline(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return one vesicle's markers at a saved time, the first repeated at the end, shape (n + 1, 2)."""
@@ -267,15 +266,11 @@ class Run:
 
     def phase_angle(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the phase angle of where each tension is about the centroid of the area, in (-pi, pi]."""
-        middle = self.tension_points(frame, vesicle) - centroid(self.outline(frame, vesicle))
-        return np.arctan2(middle[:, 1], middle[:, 0])
-
-    def tension_points(self, frame: int, vesicle: int = 0) -> np.ndarray:
-        """Return where the tension is, shape (n, 2): the midpoints of the edges, or the markers with spectral edges."""
         points = self.outline(frame, vesicle)[:-1]
-        if self._in_force.get("membrane_derivative") == "spectral":
-            return points
-        return 0.5 * (points + np.roll(points, 1, axis=0))
+        if self._in_force.get("membrane_derivative") != "spectral":
+            points = 0.5 * (points + np.roll(points, 1, axis=0))  # the midpoints of the edges
+        x, y = (points - self.centroid(frame, vesicle)).T
+        return np.arctan2(y, x)
 
     def edge_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the tension of one vesicle's edges at a saved time."""

@@ -107,6 +107,7 @@ def read_frames(file: h5py.File) -> dict[str, Any]:
         "markers": rows("vesicle/markers", start[-1], 2),
         "velocity": rows("vesicle/velocity", start[-1], 2),
         "tension": rows("vesicle/tension", start[-1]),
+        "stretch": rows("vesicle/stretch", start[-1]) if "vesicle/stretch" in file else np.ones((len(time), start[-1])),
         "start": start,
         "tracers": rows("tracers/points", file["tracers/points"].shape[1] if "tracers" in file else 0, 2),
         "viscosity_ratio": np.ones(count) * file.attrs.get("vesicle_viscosity_ratio", 1.0),

@@ -9,6 +9,7 @@ from harness import REFERENCES, run_petves
 from restarts import agree
 
 from petves.measures import deformation
+from petves.run import Run
 
 CAPSULES = REFERENCES["capsules"]
 FREE = "-domain_bc_x free -domain_bc_y free -domain_cells 32,32 -domain_box -4,4,-4,4 -output_every 1e9"
@@ -152,6 +153,7 @@ def test_stretching_energy_and_tension_are_those_of_the_markers(tmp_path):
     assert run.series["energy_stretching"][-1] == pytest.approx(10 * math.pi * np.mean((stretch - 1) ** 2), rel=1e-10)
     assert tension == pytest.approx(10 * (stretch - 1), abs=2e-4)
     assert run.saved("vesicle/stretch", "run.h5")[-1] == pytest.approx(stretch, abs=1e-9)
+    assert Run.read(run.folder).stretch[-1] == pytest.approx(stretch, abs=1e-9)
 
 
 @pytest.mark.parametrize("moment", CAPSULES["moments"])

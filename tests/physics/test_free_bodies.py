@@ -139,7 +139,9 @@ def test_an_inclusion(case, tmp_path):
 def test_contact_with_a_vesicle_is_equal_and_opposite(tmp_path):
     """A disc that is pulled into a vesicle: what it bears less than its load, the vesicle bears; the same on 3 ranks."""
     options = f"{PERIODIC} -domain_box -1,1,-1,1 -domain_cells 48,48 -vesicle_center .2,.05 -vesicle_area .2"
-    options += " -vesicle_reduced_area .9 -vesicle_angle 90 -obstacle_shape posts -obstacle_free all -obstacle_radius .2"
+    options += (
+        " -vesicle_reduced_area .9 -vesicle_angle 90 -obstacle_shape posts -obstacle_free all -obstacle_radius .2"
+    )
     options += " -obstacle_center -.27,0 -obstacle_force 6,0 -contact_repulsion 100 -contact_repulsion_range .1"
     options += " -time_step .02 -output_overwrite"
     names = ("gap", "center_x", "coupled_its", "obstacle_rotation_1", "obstacle_force_x_1", "pressure_drop")

@@ -194,18 +194,22 @@ def _plot_motion_of_many(run: Run, look: Look) -> Path:
 
 
 def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "tension.png") -> Path:
-    """Draw the tension against the phase angle about the centroid, at a saved time; many vesicles in one colour."""
-    figure, (axes,) = new_figure(6, 4, look=look)
+    """Draw the tension, and the stretch of membranes that stretch, against the phase angle about the centroid at a saved time."""
+    shown = [(run.tension[frame], TENSION), (run.stretch[frame], "stretch")][: 1 + bool((run.stretch != 1).any())]
+    figure, panels = new_figure(6 * len(shown), 4, columns=len(shown), look=look)
     few = run.vesicles <= MANY
     for vesicle in range(run.vesicles):
-        angle = run.phase_angle(frame, vesicle) / np.pi
+        angle, own = run.phase_angle(frame, vesicle) / np.pi, slice(*run.start[vesicle : vesicle + 2])
         order = np.argsort(angle)
-        label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
-        style = dict(ms=4, lw=1, label=label) if few else dict(ms=0, lw=0.5, color="black", alpha=0.3)
-        axes.plot(angle[order], run.edge_tension(frame, vesicle)[order], ".-", **style)
-    dress(axes, xlabel=rf"phase angle $\varphi/\pi$ at $t$ = {run.time[frame]:.4g}", ylabel=TENSION, xlim=(-1, 1))
+        style = (
+            dict(ms=4, lw=1, label=f"vesicle {vesicle + 1}") if few else dict(ms=0, lw=0.5, color="black", alpha=0.3)
+        )
+        for axes, (values, _) in zip(panels, shown):
+            axes.plot(angle[order], values[own][order], ".-", **style)
+    for axes, (_, label) in zip(panels, shown):
+        dress(axes, xlabel=rf"phase angle $\varphi/\pi$ at $t$ = {run.time[frame]:.4g}", ylabel=label, xlim=(-1, 1))
     if few and run.vesicles > 1:
-        legend_above(axes, columns=4)
+        legend_above(panels[0], columns=4)
     return save_figure(figure, run.folder / name, look)
 
 
