@@ -186,20 +186,12 @@ PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By the last row of the record, which every rank has. */
-static PetscBool IsSteady(Simulation s) {
-  const Record *r = &s->output->record;
-  const PetscReal tolerance = s->scene->time.steady_tol;
-  PetscBool steady = tolerance > 0 && r->vesicles;
-  for (PetscInt v = 0; v < r->vesicles && steady; v++)
-    steady = r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED] < tolerance;
-  return steady;
-}
-
 /* One step, to the time `until` at most, its row of series.csv and the files that are due. Adaptive steps end at the
    times of frames. */
 static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failure) {
   const StepReport *report = &s->scheme->report;
+  const Record *r = &s->output->record;
+  const PetscReal tolerance = s->scene->time.steady_tol;
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
@@ -208,7 +200,9 @@ static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failu
   *failure = *report->failure ? report->failure : NULL;
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OutputStep(s->output));
-  s->steady = IsSteady(s);
+  s->steady = tolerance > 0 && r->vesicles; /* by the last row of the record, which every rank has */
+  for (PetscInt v = 0; v < r->vesicles && s->steady; v++)
+    s->steady = r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED] < tolerance;
   PetscCall(PetscTime(&end));
   s->longest_step = PetscMax(s->longest_step, end - start);
   PetscFunctionReturn(PETSC_SUCCESS);

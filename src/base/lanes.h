@@ -8,7 +8,7 @@
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 
 /* LanesAt - load the four numbers from x on. LanesPut - store four numbers from x on. LanesSum - sum of four numbers.
-   LanesTwoSums - sums of two times four numbers. LanesPairs - load the first numbers, a, and the second numbers, b, of
+   LanesPairs - load the first numbers, a, and the second numbers, b, of
    four interlaced pairs x[8]. LanesInterlace - store a and b as four interlaced pairs. */
 static inline Lanes LanesAt(const PetscReal x[]) {
   return *(const Lanes *)x;
@@ -18,11 +18,6 @@ static inline void LanesPut(Lanes a, PetscReal x[]) {
 }
 static inline PetscReal LanesSum(Lanes x) {
   return (x[0] + x[1]) + (x[2] + x[3]);
-}
-static inline void LanesTwoSums(Lanes x, Lanes y, PetscReal *a, PetscReal *b) {
-  const Lanes two = (Lanes){x[0], y[0], x[2], y[2]} + (Lanes){x[1], y[1], x[3], y[3]};
-  *a = two[0] + two[2];
-  *b = two[1] + two[3];
 }
 static inline void LanesPairs(const PetscReal x[], Lanes *a, Lanes *b) {
   const Lanes p = LanesAt(x), q = LanesAt(x + LANES);

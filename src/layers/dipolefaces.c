@@ -79,7 +79,8 @@ void DipoleFacesAnswer(const DipoleFaces *f, const OffsetTable lattice[2], const
         for (int q = 0; q < 2; q++)
           sum[q] += wy[j] *
                     (LanesAt(wx) * LanesAt(f->field[q] + at) + LanesAt(wx + LANES) * LanesAt(f->field[q] + at + LANES));
-      LanesTwoSums(sum[0], sum[1], &free[c ? 3 : 0][k], &free[c ? 1 : 2][k]);
+      free[c ? 3 : 0][k] = LanesSum(sum[0]);
+      free[c ? 1 : 2][k] = LanesSum(sum[1]);
     }
   }
 }

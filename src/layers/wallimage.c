@@ -127,17 +127,9 @@ static void PlaceEnd(Markers m, PetscReal y, PetscReal across, ImageEnd *e) {
   for (PetscInt k = 0; k < e->row[1].n; k++) e->row[1].weight[k] *= e->scale;
 }
 
-/* Rows of a dipole y cells from a wall; parts seen from it. */
-static void PlaceDipole(PetscReal y, WallRows row[DIPOLE_COUNT]) {
-  static const KernelWeights weights[DIPOLE_COUNT] = {KernelSpline4, KernelSpline6, KernelSpline5};
-  for (int part = 0; part < DIPOLE_COUNT && y < IMAGE_CELLS; part++) {
-    const PetscBool nodes = part == DIPOLE_XY;
-    row[part] = WallRowsOf(weights[part], y, nodes);
-    WallRowsFold(FOLD_SMOOTH, nodes, &row[part]);
-  }
-}
-
 PetscErrorCode WallImagePlace(WallImage m, const PaddedStencil velocity[], const PaddedStencil source[]) {
+  static const KernelWeights weights[DIPOLE_COUNT] = {KernelSpline4, KernelSpline6,
+                                                      KernelSpline5}; /* across the wall */
   const Grid g = m->markers->grid;
   PetscFunctionBeginUser;
   m->velocity = velocity;
@@ -150,7 +142,11 @@ PetscErrorCode WallImagePlace(WallImage m, const PaddedStencil velocity[], const
       const PetscReal y = (wall % 2 ? g->hi[wall / 2] - X : X - g->lo[wall / 2]) / g->h;
       if (m->owner) m->y[wall][k] = y;
       if (m->owner) PlaceEnd(m->markers, y, m->form.moment[1].second, &m->end[wall][k]);
-      if (m->row[wall]) PlaceDipole(y, m->row[wall] + DIPOLE_COUNT * k);
+      for (int part = 0; part < DIPOLE_COUNT && m->row[wall] && y < IMAGE_CELLS; part++) {
+        WallRows *row = &m->row[wall][DIPOLE_COUNT * k + part];
+        *row = WallRowsOf(weights[part], y, part == DIPOLE_XY);
+        WallRowsFold(FOLD_SMOOTH, part == DIPOLE_XY, row);
+      }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

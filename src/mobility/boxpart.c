@@ -115,35 +115,30 @@ static PetscReal *InBlock(BoxPart b, const BoxBlock *q, int c) {
   return BoxFunctions(b, c) + q->first[c][0] * b->at->functions[1] + q->first[c][1];
 }
 
-/* A block's eigenvectors' amplitudes of the sources' functions. */
-static void ToAmplitudes(BoxPart b, const BoxBlock *q) {
-  PetscReal weight[DIPOLE_COUNT * BOX_BLOCK_FUNCTIONS], *w = weight;
-  for (int c = b->at->source; c < b->at->components; c++)
-    for (PetscInt i = 0; i < q->n[0]; i++)
-      for (PetscInt j = 0; j < q->n[1]; j++) *w++ = InBlock(b, q, c)[i * b->at->functions[1] + j];
-  BoxBlockSum(q, b->at->source, b->at->parts, weight, b->amplitude + q->start);
-}
-
-/* The velocities' functions of a block. */
-static void FromAmplitudes(BoxPart b, const BoxBlock *q) {
-  const PetscReal *Q = q->Q;
-  for (int c = 0; c < 2; c++)
-    for (PetscInt i = 0; i < q->n[0]; i++)
-      for (PetscInt j = 0; j < q->n[1]; j++, Q += q->modes)
-        InBlock(b, q, c)[i * b->at->functions[1] + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
-}
-
 PetscErrorCode BoxPartApply(BoxPart b, PetscReal alpha, const PetscScalar F[], PetscScalar U[]) {
   const BoxTable *t = b->at;
   const Layout l = b->markers->layout;
+  const PetscInt ny = t->functions[1];
   PetscFunctionBeginUser;
   PetscCall(BoxGather(b, F));
-  for (PetscInt k = 0; k < t->blocks; k++) ToAmplitudes(b, &t->block[k]);
+  for (const BoxBlock *q = t->block; q < t->block + t->blocks; q++) { /* to the eigenvectors' amplitudes */
+    PetscReal weight[DIPOLE_COUNT * BOX_BLOCK_FUNCTIONS], *w = weight;
+    for (int c = t->source; c < t->components; c++)
+      for (PetscInt i = 0; i < q->n[0]; i++)
+        for (PetscInt j = 0; j < q->n[1]; j++) *w++ = InBlock(b, q, c)[i * ny + j];
+    BoxBlockSum(q, t->source, t->parts, weight, b->amplitude + q->start);
+  }
   if (l->size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->amplitude, (PetscMPIInt)t->rank, MPIU_REAL, MPI_SUM, l->comm));
   for (PetscInt m = 0; m < t->rank; m++) b->amplitude[m] *= alpha * t->l[m];
   PetscCall(PetscArrayzero(b->function, 2 * t->functions[0] * t->functions[1])); /* those of no block too */
-  for (PetscInt k = 0; k < t->blocks; k++) FromAmplitudes(b, &t->block[k]);
+  for (const BoxBlock *q = t->block; q < t->block + t->blocks; q++) {            /* and to the velocities' functions */
+    const PetscReal *Q = q->Q;
+    for (int c = 0; c < 2; c++)
+      for (PetscInt i = 0; i < q->n[0]; i++)
+        for (PetscInt j = 0; j < q->n[1]; j++, Q += q->modes)
+          InBlock(b, q, c)[i * ny + j] = LanesDot(q->modes, b->amplitude + q->start, Q);
+  }
   PetscCall(BoxScatter(b, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

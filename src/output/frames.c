@@ -7,19 +7,6 @@
   "u, v: velocity (background included) at cell centres; p: pressure at cell centres, without its mean gradient "      \
   "along x, which is pressure_gradient; tension k "
 
-/* The ratios of viscosities, unless all are 1. */
-static PetscErrorCode FramesPutRatios(H5File *f, Scene scene) {
-  const PetscInt n = scene->shape.vesicles;
-  PetscReal *ratio;
-  PetscFunctionBeginUser;
-  if (!SceneHasContrast(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(n, &ratio));
-  for (PetscInt v = 0; v < n; v++) ratio[v] = SceneViscosityRatio(scene, v);
-  H5Put(f, "vesicle_viscosity_ratio", H5_REAL, n, ratio);
-  PetscCall(PetscFree(ratio));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The lines through the markers of all bodies of a kind as cells of VTK, and their numbers from 1 on: of each body the
    type of a line of many points, how many, and the points, of which the first comes again where it is closed. */
 static PetscErrorCode FramesPutLines(H5File *f, Layout l, const CurveKind kind[], const char lines[],
@@ -83,7 +70,13 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
   H5Put(f, "vesicle_start", H5_INT, l->bodies + 1, l->start);
   if (l->bodies) H5Put(f, "vesicle_c_b", H5_REAL, l->bodies, scene->membrane.each);
   if (l->bodies) PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
-  PetscCall(FramesPutRatios(f, scene));
+  if (SceneHasContrast(scene)) {
+    PetscReal *ratio;
+    PetscCall(PetscMalloc1(l->bodies, &ratio));
+    for (PetscInt v = 0; v < l->bodies; v++) ratio[v] = SceneViscosityRatio(scene, v);
+    H5Put(f, "vesicle_viscosity_ratio", H5_REAL, l->bodies, ratio);
+    PetscCall(PetscFree(ratio));
+  }
   PetscCall(FramesPutObstacles(f, &scene->obstacles, s->coupling->bodies->obstacles));
   H5PutText(f, "version", PETVES_VERSION);
   H5PutText(f, "git_commit", PetvesCommit());

@@ -35,9 +35,7 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   CoarseGrid c;
   PetscFunctionBeginUser;
   *out = NULL;
-  /* the stream function does not serve walls in x alone */
-  const PetscBool serves = run->bc[0] == BC_PERIODIC || run->bc[1] != BC_PERIODIC;
-  const PetscInt times = FluidSpecIsFree(run) || !serves ? 0 : CoarseTimes(run);
+  const PetscInt times = FluidSpecIsFree(run) ? 0 : CoarseTimes(run);
   if (!times) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&c));
   *out = c;

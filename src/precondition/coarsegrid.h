@@ -23,7 +23,7 @@ struct _p_CoarseGrid {
 };
 
 /* CoarseGridCreate - for the quasi-steady fluid that spec makes and vesicles with these initial lengths, whose layout
-   is `fine`. NULL in unbounded fluid, between walls in x alone, and where the numbers of cells have no common divisor
+   is `fine`. NULL in unbounded fluid, and where the numbers of cells have no common divisor
    of 2 to 5 or the coarse cells would be fewer than 16. Collective. */
 PETSC_EXTERN PetscErrorCode CoarseGridCreate(const FluidSpec *spec, Layout fine, const PetscReal length[],
                                              const char kernel[], CoarseGrid *coarse);

@@ -1,28 +1,9 @@
 #include "fluid/stokes/fluid.h"
 
 PetscErrorCode FluidSolveHelmholtz(Fluid f, Vec b, Vec w) {
-  const PetscInt v = GridLocalU(f->grid);
-  const PetscScalar *ba;
-  PetscScalar *wa;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(b, &ba));
-  PetscCall(VecGetArray(w, &wa));
-  PetscCall(FastSolverSolve(f->solver[FIELD_U], ba, wa));
-  PetscCall(FastSolverSolve(f->solver[FIELD_V], ba + v, wa + v));
-  PetscCall(VecRestoreArray(w, &wa));
-  PetscCall(VecRestoreArrayRead(b, &ba));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FluidSolvePoisson(Fluid f, Vec q, Vec p) {
-  const PetscScalar *qa;
-  PetscScalar *pa;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(q, &qa));
-  PetscCall(VecGetArray(p, &pa));
-  PetscCall(FastSolverSolve(f->solver[FIELD_P], qa, pa));
-  PetscCall(VecRestoreArray(p, &pa));
-  PetscCall(VecRestoreArrayRead(q, &qa));
+  PetscCall(FastSolverApply(f->solver[FIELD_U], 0, b, w));
+  PetscCall(FastSolverApply(f->solver[FIELD_V], GridLocalU(f->grid), b, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -40,7 +40,9 @@ PETSC_EXTERN PetscErrorCode FluidSetTimeCoefficient(Fluid fluid, PetscReal a0);
 PETSC_EXTERN PetscErrorCode FluidSolveHelmholtz(Fluid fluid, Vec b, Vec w);
 
 /* FluidSolvePoisson - p = L^-1 q with zero mean, one scalar solve; p may be q. Collective. Errors: see FluidFailure. */
-PETSC_EXTERN PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p);
+static inline PetscErrorCode FluidSolvePoisson(Fluid fluid, Vec q, Vec p) {
+  return FastSolverApply(fluid->solver[FIELD_P], 0, q, p);
+}
 
 /* FluidRemoveMean - take the mean of each component off a velocity; the box must be periodic in x and y. Collective. */
 PETSC_EXTERN PetscErrorCode FluidRemoveMean(Fluid fluid, Vec w);

@@ -8,18 +8,24 @@ static const struct {
                  {"fftw", FastSolverCreate_FFTW},
                  {"hypre", FastSolverCreate_Hypre}};
 
-/* The solver as a PETSc preconditioner. */
-static PetscErrorCode ApplyShell(PC pc, Vec b, Vec x) {
-  FastSolver s;
+PetscErrorCode FastSolverApply(FastSolver s, PetscInt first, Vec b, Vec x) {
   const PetscScalar *ba;
   PetscScalar *xa;
   PetscFunctionBeginUser;
-  PetscCall(PCShellGetContext(pc, &s));
   PetscCall(VecGetArrayRead(b, &ba));
   PetscCall(VecGetArray(x, &xa));
-  PetscCall(FastSolverSolve(s, ba, xa));
+  PetscCall(FastSolverSolve(s, ba + first, xa + first));
   PetscCall(VecRestoreArray(x, &xa));
   PetscCall(VecRestoreArrayRead(b, &ba));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The solver as a PETSc preconditioner. */
+static PetscErrorCode ApplyShell(PC pc, Vec b, Vec x) {
+  FastSolver s;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &s));
+  PetscCall(FastSolverApply(s, 0, b, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -44,6 +44,9 @@ PETSC_EXTERN PetscErrorCode FastSolverSetCoefficients(FastSolver s, PetscReal a0
    Collective. Errors: see `failure` above. */
 PETSC_EXTERN PetscErrorCode FastSolverSolve(FastSolver s, const PetscScalar b[], PetscScalar x[]);
 
+/* FastSolverApply - FastSolverSolve from the entry `first` of both vectors' local arrays on; x may be b. Collective. */
+PETSC_EXTERN PetscErrorCode FastSolverApply(FastSolver s, PetscInt first, Vec b, Vec x);
+
 /* FastSolverClearFailure - forget the failure of earlier solves. FastSolverCount - count a solve of the same work that
    was made elsewhere. Not collective. */
 static inline void FastSolverClearFailure(FastSolver s) {
