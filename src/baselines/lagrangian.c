@@ -83,11 +83,17 @@ static PetscErrorCode Create(Coupling coupling, const char prefix[], int each, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PCILU in nested dissection, unless options say otherwise. */
-static PetscErrorCode CreateChat(LagrangianSolver s) {
-  PetscBool none;
+/* GMRES preconditions from the right unless the user names a side: its test then sees the residual itself, dt times
+   which is the surface divergence. The left-preconditioned residual underestimates it, the more the finer the grid. */
+PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
+  LagrangianSolver s;
+  PetscBool gmres, given, none;
+  PC pc;
   PetscFunctionBeginUser;
-  PetscCall(PCCreate(PETSC_COMM_SELF, &s->chat));
+  PetscCall(Create(coupling, "tension_", 1, MultTension, out));
+  s = *out;
+  PetscCall(VecDuplicate(s->r.source, &s->q2));
+  PetscCall(PCCreate(PETSC_COMM_SELF, &s->chat)); /* PCILU in nested dissection, unless options say otherwise */
   PetscCall(PCSetOptionsPrefix(s->chat, s->prefix));
   PetscCall(PCSetType(s->chat, PCILU));
   PetscCall(PCFactorSetLevels(s->chat, COMPLETE_FILL));
@@ -96,21 +102,7 @@ static PetscErrorCode CreateChat(LagrangianSolver s) {
   PetscCall(PCSetFromOptions(s->chat));
   PetscCall(PetscObjectTypeCompare((PetscObject)s->chat, PCNONE, &none));
   if (none) PetscCall(PCDestroy(&s->chat));
-  for (int k = 0; k < 2; k++) PetscCall(VecCreateSeq(PETSC_COMM_SELF, s->coupling->membrane->layout->M, &s->all[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* GMRES preconditions from the right unless the user names a side: its test then sees the residual itself, dt times
-   which is the surface divergence. The left-preconditioned residual underestimates it, the more the finer the grid. */
-PetscErrorCode TensionSolverCreate(Coupling coupling, LagrangianSolver *out) {
-  LagrangianSolver s;
-  PetscBool gmres, given;
-  PC pc;
-  PetscFunctionBeginUser;
-  PetscCall(Create(coupling, "tension_", 1, MultTension, out));
-  s = *out;
-  PetscCall(VecDuplicate(s->r.source, &s->q2));
-  PetscCall(CreateChat(s));
+  for (int k = 0; k < 2; k++) PetscCall(VecCreateSeq(PETSC_COMM_SELF, coupling->membrane->layout->M, &s->all[k]));
   PetscCall(KSPGetPC(s->ksp, &pc));
   PetscCall(PCSetOptionsPrefix(pc, "tension_shell_")); /* -tension_pc_ options are those of the PC inside */
   PetscCall(PCSetType(pc, s->chat ? PCSHELL : PCNONE));

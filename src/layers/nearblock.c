@@ -117,13 +117,6 @@ static PetscErrorCode AddSelf(LayerPairs f, const NearBlock *b, PetscBool exact,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The images of one body in a wall count for the other: with a box part all walls', as it was found with all. */
-static PetscBool CountsWall(LayerPairs f, const NearBlock *b, int wall) {
-  const Grid g = f->set->markers->grid;
-  const PetscReal gap = WallGap(g, wall, &f->bounds[b->row], &f->bounds[b->column]);
-  return g->wall[wall / 2] && (f->set->box || gap < IMAGE_REACH * g->h);
-}
-
 /* Faces that the markers of a dipoles' block share, where no pair is farther apart than the lattice's tables reach, nor
    has another image for the nearest one, and where they take less: a marker's double sums cost as much as some vectors
    of faces. */
@@ -209,6 +202,7 @@ size_t NearBlockValues(Layout l, const NearBlock *b) {
 }
 
 PetscErrorCode NearBlockFill(LayerPairs f, const NearBlock *b, PetscBool exact, NearStore *s) {
+  const Grid g = f->set->markers->grid;
   const Layout l = f->set->markers->layout;
   const PetscInt shown[2] = {b->symmetric ? b->row : b->column, b->symmetric ? b->column : b->row};
   const PetscReal sign = b->symmetric ? 1 : -1, shift[2] = {sign * b->shift[0], sign * b->shift[1]};
@@ -224,7 +218,10 @@ PetscErrorCode NearBlockFill(LayerPairs f, const NearBlock *b, PetscBool exact, 
   c.back = !b->symmetric || b->row > b->column;
   c.reach = f->kernel->reach[NearBlockIsSelf(b) ? NEAR_ONE : NEAR_TWO] * f->set->markers->grid->h;
   if (f->from.stencil && !c.exact) PetscCall(ShareFaces(f, b, &c, &faces));
-  for (int wall = 0; wall < 4; wall++) c.walls[wall] = f->image && CountsWall(f, b, wall);
+  for (int wall = 0; wall < 4; wall++) { /* with a box part all walls' images count, as it was found with all */
+    const PetscReal gap = WallGap(g, wall, &f->bounds[b->row], &f->bounds[b->column]);
+    c.walls[wall] = f->image && g->wall[wall / 2] && (f->set->box || gap < IMAGE_REACH * g->h);
+  }
   for (int dir = 0; dir < 2 && !b->symmetric && !c.exact; dir++) PetscCall(PetscCalloc1(r.count + LANES, &c.flux[dir]));
   do FillRow(f, b, &r, &faces, &c, s);
   while (NearBlockNext(l, b, &r));

@@ -158,19 +158,6 @@ static PetscBool RecordRepeats(const Record *r, int column) {
   return r->vesicles > 1 && r->vesicles <= RECORD_FEW && RecordIsOwn(column);
 }
 
-/* Find where the energy of each force goes, by the name energy_NAME. */
-static void RecordPlaceEnergies(Record *r) {
-  char name[RECORD_ENTRY];
-  for (PetscInt k = 0; k < r->forces->n; k++) {
-    const Force *force = &r->forces->force[k];
-    int c = COLUMN_COUNT - 1;
-    (void)snprintf(name, RECORD_ENTRY, "energy_%s", force->name);
-    while (c >= 0 && strcmp(SeriesColumns[c], name)) c--;
-    r->column[k] = !force->energy ? RECORD_NOWHERE : c < 0 ? RECORD_LAST : c;
-    r->others += r->column[k] == RECORD_LAST;
-  }
-}
-
 static void RecordAddName(Record *r, size_t *used, const char name[]) {
   *used += (size_t)snprintf(r->header + *used, r->room - *used, "%s%s", *used ? "," : "", name);
 }
@@ -204,7 +191,14 @@ PetscErrorCode RecordCreate(PetscInt vesicles, const SceneObstacles *obstacles, 
   r->room = (size_t)(COLUMN_COUNT * (1 + PetscMin(vesicles, RECORD_FEW)) + r->solids + FORCES_MOST) * RECORD_ENTRY;
   PetscCall(PetscCalloc5(vesicles * COLUMN_COUNT, &r->each, r->solids, &r->solid, vesicles, &r->work, (PetscInt)r->room,
                          &r->header, (PetscInt)r->room, &r->text));
-  RecordPlaceEnergies(r);
+  for (PetscInt k = 0; k < forces->n; k++) { /* where its energy goes, by the name energy_NAME */
+    char name[RECORD_ENTRY];
+    int c = COLUMN_COUNT - 1;
+    (void)snprintf(name, RECORD_ENTRY, "energy_%s", forces->force[k].name);
+    while (c >= 0 && strcmp(SeriesColumns[c], name)) c--;
+    r->column[k] = !forces->force[k].energy ? RECORD_NOWHERE : c < 0 ? RECORD_LAST : c;
+    r->others += r->column[k] == RECORD_LAST;
+  }
   RecordWriteHeader(r, obstacles);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

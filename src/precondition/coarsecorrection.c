@@ -51,16 +51,6 @@ PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pair of markers i and j, d apart. */
-static CorrectionPair CorrectionOf(CoarseCorrection s, PetscInt i, PetscInt j, const PetscReal d[2], PetscReal r2) {
-  const PetscReal at = PetscSqrtReal(r2) / s->reach * (CORRECTION_POINTS - 1);
-  const PetscInt k = PetscMin((PetscInt)at, CORRECTION_POINTS - 2);
-  const PetscReal t = at - (PetscReal)k, across = (1 - t) * s->across[k] + t * s->across[k + 1],
-                  along = (1 - t) * s->along[k] + t * s->along[k + 1], both = r2 > 0 ? (along - across) / r2 : 0;
-  return (CorrectionPair){i, j, (float)(across + both * d[0] * d[0]), (float)(both * d[0] * d[1]),
-                          (float)(across + both * d[1] * d[1])};
-}
-
 /* The pairs of marker i with those of the block's column. */
 static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
   const Layout l = s->mobility->bodies->membrane->layout;
@@ -72,7 +62,13 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   PetscCall(ArrayReserve((size_t)(s->pairs + LayoutCount(l, b->column)), &s->room, &s->pair));
   for (PetscInt j = l->start[b->column]; j < l->start[b->column + 1]; j++) {
     const PetscReal d[2] = {x[0] - X[2 * j], x[1] - X[2 * j + 1]}, r2 = d[0] * d[0] + d[1] * d[1];
-    if (r2 < s->reach * s->reach) s->pair[s->pairs++] = CorrectionOf(s, i, j, d, r2);
+    if (r2 >= s->reach * s->reach) continue;
+    const PetscReal at = PetscSqrtReal(r2) / s->reach * (CORRECTION_POINTS - 1);
+    const PetscInt k = PetscMin((PetscInt)at, CORRECTION_POINTS - 2);
+    const PetscReal t = at - (PetscReal)k, across = (1 - t) * s->across[k] + t * s->across[k + 1],
+                    along = (1 - t) * s->along[k] + t * s->along[k + 1], both = r2 > 0 ? (along - across) / r2 : 0;
+    s->pair[s->pairs++] = (CorrectionPair){i, j, (float)(across + both * d[0] * d[0]), (float)(both * d[0] * d[1]),
+                                           (float)(across + both * d[1] * d[1])};
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,26 +60,23 @@ PetscErrorCode StreamDestroy(Stream *stream) {
 /* Walls, on which chi = 0, and chi is even: chi_{-1} = 0 and chi_{-2} = chi_0. Put into the recurrences,
        y1_{-1} = -r1 z1_0 - r2 (2 + r1 r2) z2_0,   y2_{-1} = -r1 z1_0 - r2 z2_0,
        z1_n = -r2/(1 + r1 r2) y2_{n-1},            z2_n = 0. */
-static void StreamSetFactors(Stream s) {
-  const ModeFactors f = s->factors;
-  const PetscReal h2 = PetscSqr(f->grid->h), nu = s->fluid->nu;
-  for (PetscInt k = s->side ? 0 : 2; k < f->modes; k++) { /* where x is periodic mode 0 is the mean flow */
-    const PetscReal theta[2] = {ModeTheta(f->lambda[k]), ModeTheta(f->lambda[k] + s->fluid->alpha * h2 / nu)};
-    const PetscReal r1 = PetscExpReal(-theta[0]), r2 = PetscExpReal(-theta[1]);
-    ModeFactorsSet(f, k, theta, f->scale[k] * r1 * r2 * h2 / nu, (ModePair){{{-r1, -r2 * (2 + r1 * r2)}, {-r1, -r2}}},
-                   (ModePair){{{0, -r2 / (1 + r1 * r2)}, {0, 0}}});
-  }
-  ModeFactorsReach(f, NEGLIGIBLE, f->grid->n[1]); /* r1 is the slower decay */
-}
-
 static PetscErrorCode StreamSetUp(Stream s) {
+  const ModeFactors factors = s->factors;
   const Fluid f = s->fluid;
+  const PetscReal h2 = PetscSqr(f->grid->h), nu = f->nu;
   PetscFunctionBeginUser;
   PetscCall(SlabsReserve(s->slabs));
   if (s->mean) PetscCall(TridiagonalReserve(s->mean));
   if (s->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   s->alpha = f->alpha;
-  StreamSetFactors(s);
+  for (PetscInt k = s->side ? 0 : 2; k < factors->modes; k++) { /* where x is periodic mode 0 is the mean flow */
+    const PetscReal theta[2] = {ModeTheta(factors->lambda[k]), ModeTheta(factors->lambda[k] + f->alpha * h2 / nu)};
+    const PetscReal r1 = PetscExpReal(-theta[0]), r2 = PetscExpReal(-theta[1]);
+    ModeFactorsSet(factors, k, theta, factors->scale[k] * r1 * r2 * h2 / nu,
+                   (ModePair){{{-r1, -r2 * (2 + r1 * r2)}, {-r1, -r2}}},
+                   (ModePair){{{0, -r2 / (1 + r1 * r2)}, {0, 0}}});
+  }
+  ModeFactorsReach(factors, NEGLIGIBLE, f->grid->n[1]); /* r1 is the slower decay */
   if (s->side) PetscCall(SideWallsSet(s->side, f->alpha, f->nu));
   if (s->mean) PetscCall(TridiagonalSetCoefficients(s->mean, f->alpha, f->nu, f->solver[FIELD_U]->singular));
   PetscFunctionReturn(PETSC_SUCCESS);
