@@ -30,27 +30,33 @@ static void SpringSetLaw(const SceneRepulsion *law, PetscReal size, const PetscR
   }
 }
 
-/* A free body's part of a spring: its marker at X. */
-static void SpringAddBody(const BodyMotion *m, Instant at, PetscReal weight, const PetscReal X[2], Spring *s) {
+/* The part of a spring of an obstacle's marker, on the side of the point (0) or of the edge (1): none, unless the
+   obstacle moves freely. */
+static void SpringAddBody(Repulsion r, Instant at, PetscInt marker, int side, PetscReal weight, const PetscReal X[],
+                          Spring *s) {
+  const BodyMotion *m = &r->bodies->obstacles->motion[LayoutBody(r->bodies->layout, marker) - r->bodies->vesicles];
   const BodyPose p = MotionPose(m, at);
-  const PetscReal *n = s->normal;
-  s->body = m->free;
-  for (int c = 0; c < 2; c++) s->pull[c] += weight * n[c];
-  s->pull[2] += weight * ((X[0] - p.center[0]) * n[1] - (X[1] - p.center[1]) * n[0]);
-  s->beyond += weight * X[0];
+  const PetscReal *n = s->normal, x = X[2 * marker], y = X[2 * marker + 1];
+  if (!m->free) return;
+  s->body[side] = m->free;
+  for (int c = 0; c < 2; c++) s->pull[side][c] += weight * n[c];
+  s->pull[side][2] += weight * ((x - p.center[0]) * n[1] - (y - p.center[1]) * n[0]);
+  s->beyond += weight * x;
+}
+
+static PetscBool SpringHasBody(const Spring *s) {
+  return s->body[0] || s->body[1] ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
    is of an obstacle stays where it is, unless it moves freely. */
 static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const CurveContact *c, Spring *s) {
-  const Layout all = r->bodies->layout;
   const PetscInt marker[3] = {c->point, c->edge[0], c->edge[1]};
   const PetscReal weight[3] = {1, c->at - 1, -c->at};
   *s = (Spring){.normal = {c->normal[0], c->normal[1]}, .distance = c->distance};
   for (int k = 0; k < 3; k++) {
     if (marker[k] >= r->membrane->layout->M) {
-      const BodyMotion *m = &r->bodies->obstacles->motion[LayoutBody(all, marker[k]) - r->bodies->vesicles];
-      if (m->free) SpringAddBody(m, at, weight[k], X + 2 * marker[k], s);
+      SpringAddBody(r, at, marker[k], k > 0, weight[k], X, s);
       continue;
     }
     s->marker[s->n] = marker[k];
@@ -59,10 +65,10 @@ static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const Cu
   SpringSetLaw(&r->law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
 }
 
-/* Markers near walls; room for 4 a marker. */
-static PetscInt FindWallSprings(Repulsion r, const PetscReal X[], Spring spring[]) {
+/* Markers of vesicles and free bodies near walls; room for 4 a marker. */
+static PetscInt FindWallSprings(Repulsion r, Instant at, const PetscReal X[], Spring spring[]) {
   const Grid g = r->grid;
-  const Layout l = r->membrane->layout;
+  const Layout l = r->bodies->layout;
   PetscInt count = 0;
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
@@ -71,9 +77,10 @@ static PetscInt FindWallSprings(Repulsion r, const PetscReal X[], Spring spring[
         const PetscReal sign = side % 2 ? -1 : 1;
         const PetscReal distance = sign * (X[2 * k + d] - (side % 2 ? g->hi[d] : g->lo[d]));
         if (!g->wall[d] || g->free || distance >= RepulsionReach(&r->law)) continue;
-        spring[count] = (Spring){.n = 1, .marker = {k}, .weight = {1}, .distance = distance};
+        spring[count] = (Spring){.n = v < r->bodies->vesicles, .marker = {k}, .weight = {1}, .distance = distance};
         spring[count].normal[d] = sign;
-        SpringSetLaw(&r->law, r->membrane->ds[v], X, &spring[count++]);
+        if (v >= r->bodies->vesicles) SpringAddBody(r, at, k, 0, 1, X, &spring[count]);
+        SpringSetLaw(&r->law, r->bodies->ds[v], X, &spring[count++]);
       }
   return count;
 }
@@ -81,18 +88,20 @@ static PetscInt FindWallSprings(Repulsion r, const PetscReal X[], Spring spring[
 /* The springs at the curves X[2(M + W)]; to be freed. */
 static PetscErrorCode FindSprings(Repulsion r, Instant at, const PetscReal X[], PetscInt *count, Spring **springs) {
   const Grid g = r->grid;
-  const Layout l = r->membrane->layout, all = r->bodies->layout;
+  const Layout all = r->bodies->layout;
+  const Obstacles o = r->bodies->obstacles;
+  const PetscInt moving = o && o->free->M ? all->bodies : r->bodies->vesicles;
   PetscReal period[2];
   CurveContact *contact;
   PetscInt n;
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] || g->free ? 0 : g->hi[d] - g->lo[d];
-  const CurveSet set = {all->bodies, l->bodies, all->start, r->bodies->kind, X, period, PETSC_FALSE};
+  const CurveSet set = {all->bodies, moving, all->start, r->bodies->kind, X, period, PETSC_FALSE};
   PetscCall(CurveContacts(&set, RepulsionReach(&r->law), &n, &contact));
-  PetscCall(PetscMalloc1(n + 4 * l->M, springs));
+  PetscCall(PetscMalloc1(n + 4 * all->M, springs));
   for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, at, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));
-  *count = n + FindWallSprings(r, X, *springs + n);
+  *count = n + FindWallSprings(r, at, X, *springs + n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -145,13 +154,16 @@ PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, 
   PetscCall(LayoutGather(r->membrane->layout, 2, V, r->all));
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
-    const PetscInt at = 3 * (s->body - 1), own = at - 3 * o->free->first;
     PetscReal along = 0;
-    if (!s->body) continue;
-    for (int c = 0; c < 3; c++) along += s->pull[c] * rates[at + c];
+    if (!SpringHasBody(s)) continue;
+    for (int c = 0; c < 6; c++)
+      if (s->body[c / 3]) along += s->pull[c / 3][c % 3] * rates[3 * (s->body[c / 3] - 1) + c % 3];
     const PetscReal T = alpha * s->stiffness * (SpringStretch(s, r->all) + along) - (known ? s->push : 0);
     if (F) SpringPull(s, r->membrane->layout, alpha * s->stiffness * along, F);
-    for (int c = 0; c < 3 && b && own >= 0 && own < FreeBodiesOwn(o); c++) b[own + c] += T * s->pull[c];
+    for (int c = 0; c < 6 && b; c++) {
+      const PetscInt own = 3 * (s->body[c / 3] - 1 - o->free->first) + c % 3;
+      if (s->body[c / 3] && own >= 0 && own < FreeBodiesOwn(o)) b[own] += T * s->pull[c / 3][c % 3];
+    }
   }
   PetscCall(PetscFree(rates));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -164,7 +176,7 @@ static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const P
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
     PetscReal apart = s->beyond - s->distance * s->normal[0];
-    if (s->n < 3 && !s->body) continue; /* of a wall or an obstacle */
+    if (s->n < 3 && !SpringHasBody(s)) continue; /* of a wall or an obstacle */
     for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
     *sum += (s->push - s->stiffness * SpringStretch(s, r->all)) * s->normal[0] * apart;
   }
@@ -184,7 +196,7 @@ static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[]
   PetscCall(FindSprings(r, at, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];
-    const PetscInt v = LayoutBody(l, s->marker[0]);
+    const PetscInt v = s->n ? LayoutBody(l, s->marker[0]) : -1;
     if (E && v >= l->own && v < l->end) E[v] += s->energy;
     if (y) SpringPull(s, l, s->push - s->stiffness * SpringStretch(s, r->all), y);
   }
@@ -216,7 +228,9 @@ static PetscErrorCode RepulsionDestroy(void *context) {
 PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force *force) {
   Repulsion r;
   PetscFunctionBeginUser;
-  if (!scene || scene->repulsion.stress <= 0 || !bodies->vesicles) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!scene || scene->repulsion.stress <= 0 ||
+      !(bodies->vesicles || (bodies->obstacles && bodies->obstacles->free->M)))
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&r));
   r->membrane = bodies->membrane;
   r->bodies = bodies;

@@ -14,7 +14,7 @@
 
 /* A point of a membrane against an edge or a wall: the distance changes by SUM weight_i normal.(X_i - X*_i), and the
    force on X_i is (push - stiffness (the same sum of X_i instead of X_i - X*_i)) weight_i normal. Where a free body is
-   on the other side, it changes by pull.q as well, q the body's own change of place, and the force and torque on the
+   on a side, the distance changes by pull.q as well, q the body's own change of place, and the force and torque on the
    body are (push - ..) pull. */
 typedef struct {
   PetscInt n, marker[3];
@@ -23,8 +23,8 @@ typedef struct {
   PetscReal stiffness; /* (length^2/time^2) */
   PetscReal push;      /* (length^3/time^2) */
   PetscReal energy;    /* at X* (length^4/time^2) */
-  PetscInt body;       /* number of the free body, from 1; 0: none */
-  PetscReal pull[3];
+  PetscInt body[2];    /* of the point, of the edge: number of the free body, from 1; 0: none */
+  PetscReal pull[2][3];
   PetscReal beyond; /* SUM weight_i x_i of the body's markers (length) */
 } Spring;
 
@@ -40,7 +40,7 @@ struct _p_Repulsion {
 };
 
 /* RepulsionBodies - what the places of free bodies add, of the contact force among the forces, if there is one: with
-   minus the force of each spring T = alpha stiffness (SUM weight normal.V + pull.q), and less its push where it is
+   minus the force of each spring T = alpha stiffness (SUM weight normal.V + SUM pull.q), and less its push where it is
    known,
        F[2n own vesicles] += what q has of T, b[3 own free] += T pull,
    of own V[2n], q[3 own free]; F or b NULL: not wanted. Collective. */

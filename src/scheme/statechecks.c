@@ -240,7 +240,8 @@ static PetscErrorCode CheckFreeBodies(Scheme s) {
   PetscFunctionBeginUser;
   if (!s->state.place) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstaclesCheck(o, s->scene, StateInstant(&s->state), s->report.failure));
-  if (*s->report.failure) PetscCall(SchemeAdvise(s, "a smaller -time_step, or a -time_end before that"));
+  if (*s->report.failure)
+    PetscCall(SchemeAdvise(s, "a smaller -time_step, -contact_repulsion, or a -time_end before that"));
   PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

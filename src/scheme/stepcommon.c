@@ -97,7 +97,7 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
 /* That moving bodies run into nothing that is solid, nor step over it. */
 static PetscErrorCode CheckBodies(Scheme s, Instant at) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const char *advice = s->state.place ? "a smaller -time_step, or a -time_end before that"
+  const char *advice = s->state.place ? "a smaller -time_step, -contact_repulsion, or a -time_end before that"
                                       : "a -time_end before that, or other velocities";
   PetscFunctionBeginUser;
   if (!o || !o->moving) PetscFunctionReturn(PETSC_SUCCESS);

@@ -152,6 +152,21 @@ def test_contact_with_a_vesicle_is_equal_and_opposite(tmp_path):
     assert abs(balance[0]) < 1e-10 and np.abs(balance).max() < 1e-3
 
 
+def test_discs_come_to_rest_on_the_floor(tmp_path):
+    """Two heavy discs without vesicles: at last the wall and the other disc bear them, and the fluid rests."""
+    options = f"{ALONE} -domain_box -1,1,-1,1 -domain_cells 48,48 -domain_bc_x periodic -obstacle_radius .2,.15"
+    options += " -obstacle_center 0,-.3,.05,.3 -obstacle_density 2 -fluid_gravity 0,-300 -contact_repulsion 500"
+    series = run_petves(tmp_path, f"{options} -contact_repulsion_range .1 -time_step .01 -time_end 1.5").series
+    place = np.array([[series[f"obstacle_center_{d}_{body}"][-1] for d in "xy"] for body in (1, 2)])
+    for body, radius in ((1, 0.2), (2, 0.15)):
+        weight = 300 * np.pi * radius**2
+        assert series[f"obstacle_force_y_{body}"][0] == pytest.approx(weight, rel=1e-6)
+        assert abs(series[f"obstacle_force_y_{body}"][-1]) < 2e-3 * weight
+        assert np.abs(rates(series, body)[:2]).max() < 1e-2
+        assert 0.04 < place[body - 1, 1] + 1 - radius < 0.1
+    assert 0.35 < np.hypot(*(place[0] - place[1]))
+
+
 SHEARED = "-domain_box 0,4,0,4 -domain_bc_x periodic -flow_type shear -obstacle_shape posts -obstacle_free all"
 
 
