@@ -43,6 +43,7 @@ def test_every_kind_is_drawn():
             seen.update(change.name for change in metamorphic.changes(scene, draw.random, RANKS))
     kinds = "posts closed container open spanning coupled split penalty free periodic wall convective unsteady"
     kinds += " shear poiseuille extension uniform flux error vesicle_viscosity_ratio fluid_gravity contact_adhesion"
+    kinds += " hooke green neo_hookean helfrich circle membrane_viscosity membrane_memory membrane_permeability contact_potential"
     kinds += " shift mirror swap order time length both"
     assert not [kind for kind in kinds.split() if not seen[kind]]
     assert seen["2 ranks"] == seen["3 ranks"] > SCENES / 2

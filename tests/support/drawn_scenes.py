@@ -1,5 +1,5 @@
 """Coupled scenes of a few bodies on a coarse grid, drawn at random: boundaries, flows, schemes, inertia, obstacles,
-contrast, gravity, contact. Their curves are in files, so that tests/robustness/metamorphic.py has the same markers in each change.
+contrast, gravity, contact, membranes that stretch, remember and leak. Their curves are in files, so that tests/robustness/metamorphic.py has the same markers in each change.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 
 #: Lists that have an entry for each vesicle, or each obstacle.
 OF_VESICLES = ("vesicle_bending", "vesicle_viscosity_ratio", "vesicle_density_difference")
+OF_VESICLES += ("membrane_stretching", "membrane_memory")
 OF_SOLIDS = ("obstacle_center", "obstacle_radius", "obstacle_velocity", "obstacle_rotation")
 
 PROJECTIONS = ["split", "penalty"]
@@ -158,6 +159,7 @@ class Draw:
         else:
             self.unsplit(len(vesicles), bending)
             self.forces(len(vesicles), nu * rate / R0, bending)
+            self.membranes(len(vesicles), R0, nu, bending)
         if kind != "none" and self.text["fluid_inertia"] != "none":  # with shorter steps vesicles beside solids grow
             self.numbers |= {
                 name: value * max(1, 0.64 * h**2 / (nu * step))
@@ -198,6 +200,32 @@ class Draw:
             self.numbers["contact_repulsion"] = pick([1, 30]) * bending / R0**3
             self.numbers |= {"contact_repulsion_range": pick([1.5, 3]) * h} if self.chance(0.5) else {}
             self.numbers |= {"contact_adhesion": 0.3 * bending / R0**2} if self.chance(0.5) else {}
+
+    def membranes(self, count: int, R0: float, nu: float, bending: float) -> None:
+        pick, tension = self.random.choice, bending / R0**2
+        derivative = pick(["spectral", "spectral", "bending", "fd"])
+        if self.chance(0.45) and "scheme_auto" not in self.text:
+            self.text |= {"membrane_derivative": derivative, "membrane_law": pick(["green", "neo_hookean", "hooke"])}
+            modulus = tension * pick([3, 30, 1000])
+            self.numbers["membrane_stretching"] = np.array(
+                [modulus, *[modulus * pick([0, 1, 5]) for _ in range(count - 1)]]
+            )
+            self.numbers |= {"membrane_viscosity": R0 * nu} if self.chance(0.3) else {}
+            self.text |= (
+                {"membrane_moment": pick(["angle", "helfrich"])} if derivative != "fd" and self.chance(0.5) else {}
+            )
+            self.text |= {"membrane_rest": "circle"} if self.chance(0.2) else {}
+        if derivative != "fd" and self.chance(0.2):
+            self.numbers["membrane_memory"] = np.array([pick([0, 0.5, 1]) for _ in range(count)])
+        if "vesicle_viscosity_ratio" not in self.numbers and self.chance(0.15):
+            self.numbers["membrane_permeability"] = pick([0.01, 0.1]) * R0 / nu
+            self.numbers["membrane_osmotic"] = bending / R0**3 * np.array([pick([0, 1, 3]), pick([0, 1])])
+        if self.chance(0.2):
+            self.numbers |= {
+                "contact_potential": pick([0.1, 1]) * bending / R0**3,
+                "contact_potential_distance": R0 * pick([0.4, 1]),
+            }
+            self.numbers |= {"contact_potential_exponents": np.array([6.5, 3])} if self.chance(0.3) else {}
 
     def flow(self, rate: float) -> str:
         walls = [bc == "wall" for bc in self.bc.tolist()]
