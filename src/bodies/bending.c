@@ -105,7 +105,7 @@ static PetscErrorCode BendingEnergy(void *context, Instant at, const PetscScalar
 PetscErrorCode ForceCreate_Bending(Bodies bodies, Grid grid, Scene scene, Force *force) {
   const Membrane m = bodies->membrane;
   PetscFunctionBeginUser;
-  if (m->bending > 0)
+  if (m->bending > 0 && m->moment == MOMENT_QUADRATIC)
     *force = (Force){.name = "bending",
                      .reach = FORCE_WITHIN,
                      .context = m,

@@ -1,13 +1,12 @@
 #include "bodies/moment.h"
-#include "bodies/bending.h"
 
 #define TIMES 2 /* points of the energy for each marker */
 
 /* The change of bending at a point of the membrane, theta - kappa0 lambda^p, and its derivatives. */
 typedef struct {
   PetscReal change, weight;   /* the energy of a length at rest is c_b/2 weight change^2, weight = lambda^-p */
-  PetscReal by_a[2], by_b[2]; /* d(change) */
-  PetscReal weight_by_a[2];   /* d(weight)/weight */
+  PetscReal by_a[2], by_b[2]; /* derivatives of the change by a = X_s and b = X_ss */
+  PetscReal weight_by_a[2];   /* derivative of the weight by a, over the weight */
 } MomentPoint;
 
 typedef struct {
@@ -72,7 +71,7 @@ static PetscErrorCode MomentPoints(Membrane m, PetscInt v, const PetscScalar X[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* G += alpha grad E_B, or with a motion V[2n] that is not NULL alpha N V. */
+/* G += alpha grad E_B, or with a motion V[2n] that is not NULL alpha N V, at the markers of these points. */
 static PetscErrorCode MomentAdd(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
                                 const PetscScalar V[], PetscScalar G[]) {
   const PetscInt fine = TIMES * LayoutCount(m->layout, v);
@@ -91,20 +90,6 @@ static PetscErrorCode MomentAdd(Membrane m, PetscInt v, PetscReal alpha, const M
   }
   MomentSlopesTranspose(m, v, alpha, a, b, G);
   PetscCall(PetscFree2(a, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode MomentEnergy(Membrane m, PetscInt v, const PetscScalar X[], PetscReal *energy, PetscScalar G[]) {
-  const PetscInt fine = TIMES * LayoutCount(m->layout, v);
-  PetscReal sum = 0;
-  MomentPoint *point;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(fine, &point));
-  PetscCall(MomentPoints(m, v, X, point));
-  for (PetscInt q = 0; q < fine; q++) sum += 0.5 * point[q].weight * PetscSqr(point[q].change);
-  *energy = m->bending * m->part[v] * m->ds[v] / TIMES * sum;
-  if (G) PetscCall(MomentAdd(m, v, 1, point, NULL, G));
-  PetscCall(PetscFree(point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,7 +116,6 @@ static PetscErrorCode MomentRate(void *context, PetscReal alpha, const PetscScal
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt at = LayoutOffset(l, v);
     PetscCall(MomentAdd(m, v, alpha, MomentPointsOf(o, v), V + 2 * at, F + 2 * at));
-    MembraneVesicleBending(m, v, -alpha * m->bending, V + 2 * at, F + 2 * at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,41 +137,35 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
   for (PetscInt k = 0; k < 2 * n; k++) {
     unit[k] = 1;
     PetscCall(MomentAdd(m, v, alpha, MomentPointsOf(o, v), unit, K + 2 * n * k));
-    MembraneVesicleBending(m, v, -alpha * m->bending, unit, K + 2 * n * k);
     unit[k] = 0;
   }
   PetscCall(PetscFree(unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MomentLaw(void *context, Instant t, const PetscScalar X[], PetscScalar F[]) {
-  const Membrane m = ((const Moment *)context)->membrane;
-  const Layout l = m->layout;
-  PetscScalar *G;
-  PetscReal energy;
+/* F -= grad E_B, E[vesicles] += E_B of the own vesicles at the markers X[2n]; NULL: not wanted. */
+static PetscErrorCode MomentOfMarkers(const Moment *o, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
+  const Membrane m = o->membrane;
+  MomentPoint *point;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * l->n, &G));
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = 2 * LayoutOffset(l, v);
-    PetscCall(MomentEnergy(m, v, X + at, &energy, G + at));
-    MembraneVesicleBending(m, v, -m->bending, X + at, G + at);
+  PetscCall(PetscMalloc1(TIMES * m->layout->n, &point));
+  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(m->layout, v), fine = TIMES * LayoutCount(m->layout, v);
+    const PetscReal size = m->bending * m->part[v] * m->ds[v] / TIMES;
+    PetscCall(MomentPoints(m, v, X + at, point));
+    for (PetscInt q = 0; q < fine && E; q++) E[v] += 0.5 * size * point[q].weight * PetscSqr(point[q].change);
+    if (F) PetscCall(MomentAdd(m, v, -1, point, NULL, F + at));
   }
-  for (PetscInt k = 0; k < 2 * l->n; k++) F[k] -= G[k];
-  PetscCall(PetscFree(G));
+  PetscCall(PetscFree(point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What E_B is above the quadratic energy, which is in the same column. */
-static PetscErrorCode MomentAddEnergy(void *context, Instant t, const PetscScalar X[], PetscReal E[]) {
-  const Membrane m = ((const Moment *)context)->membrane;
-  PetscFunctionBeginUser;
-  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
-    const PetscScalar *own = X + 2 * LayoutOffset(m->layout, v);
-    PetscReal energy;
-    PetscCall(MomentEnergy(m, v, own, &energy, NULL));
-    E[v] += energy - MembraneBendingEnergy(m, v, own);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscErrorCode MomentLaw(void *context, Instant t, const PetscScalar X[], PetscScalar F[]) {
+  return MomentOfMarkers((const Moment *)context, X, F, NULL);
+}
+
+static PetscErrorCode MomentEnergy(void *context, Instant t, const PetscScalar X[], PetscReal E[]) {
+  return MomentOfMarkers((const Moment *)context, X, NULL, E);
 }
 
 static PetscErrorCode MomentDestroy(void *context) {
@@ -214,7 +192,7 @@ PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *
                    .known = MomentKnown,
                    .dense = MomentDense,
                    .law = MomentLaw,
-                   .energy = MomentAddEnergy,
+                   .energy = MomentEnergy,
                    .destroy = MomentDestroy};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
