@@ -177,23 +177,32 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
   return REFUSE(s, rules);
 }
 
+static PetscReal SceneLargest(const RealList *list) {
+  PetscReal largest = 0;
+  for (PetscInt k = 0; k < list->n; k++) largest = PetscMax(largest, list->v[k]);
+  return largest;
+}
+
 /* Membranes that stretch, remember, resist, let water through or draw one another: what each of them needs. */
 static PetscErrorCode SceneCheckMembranes(Scene s) {
   const SceneMembrane *m = &s->membrane;
   const ScenePotential *p = &s->potential;
   const PetscBool paper = strcmp(s->scheme.type, "coupled"), stretches = m->law != LAW_INEXTENSIBLE;
-  PetscReal modulus = 0, memory = 0;
-  for (PetscInt k = 0; k < m->stretching.n; k++) modulus = PetscMax(modulus, m->stretching.v[k]);
-  for (PetscInt k = 0; k < m->memory.n; k++) memory = PetscMax(memory, m->memory.v[k]);
+  const PetscReal modulus = SceneLargest(&m->stretching), memory = SceneLargest(&m->memory);
+  const PetscBool bends = SceneLargest(&m->stiffness) > 0;
   const SceneRule rules[] = {
     {!stretches && modulus > 0,
      "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
     {stretches && modulus == 0,
      "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
     {!stretches && m->moment != MOMENT_QUADRATIC,
-     "-membrane_moment {-membrane_moment}: of a membrane that does not stretch all are one; allowed: quadratic, or -membrane_law hooke, green or neo_hookean"},
+     "-membrane_moment {-membrane_moment}: a membrane that does not stretch bends alike by all of them; allowed: quadratic, or -membrane_law hooke, green or neo_hookean"},
     {m->moment != MOMENT_QUADRATIC && m->derivative == DERIVATIVE_FD,
      "-membrane_moment {-membrane_moment}: not with -membrane_derivative fd; allowed: quadratic, or -membrane_derivative spectral or bending"},
+    {m->moment != MOMENT_QUADRATIC && !bends,
+     "-membrane_moment {-membrane_moment}: -vesicle_bending 0 leaves bending out; allowed: quadratic, or -vesicle_bending above 0"},
+    {memory > 0 && !bends,
+     "-membrane_memory {-membrane_memory}: -vesicle_bending 0 bends back to no shape; allowed: 0, or -vesicle_bending above 0"},
     {!stretches && m->viscosity > 0,
      "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
     {m->osmotic.n != 2,
