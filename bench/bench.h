@@ -10,19 +10,15 @@ static inline void PrintList(const char name[], PetscInt n, const PetscReal valu
 }
 
 /* Seconds since `start`, of the slowest rank. Collective. */
-static inline PetscErrorCode Elapsed(PetscLogDouble start, PetscReal *seconds) {
+static inline void Elapsed(PetscLogDouble start, PetscReal *seconds) {
   PetscLogDouble now;
-  PetscFunctionBeginUser;
-  PetscCall(PetscTime(&now));
+  TestCall(PetscTime(&now));
   *seconds = now - start;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, seconds, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
 }
 
 /* Start together. */
-static inline PetscErrorCode Begin(PetscLogDouble *start) {
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
-  PetscCall(PetscTime(start));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static inline void Begin(PetscLogDouble *start) {
+  TestCall(MPI_Barrier(PETSC_COMM_WORLD));
+  TestCall(PetscTime(start));
 }

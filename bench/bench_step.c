@@ -8,9 +8,8 @@
 enum { WALL, FAST, REST, SOLVES, COUPLED, TENSION, BENDING, LISTS };
 static const char *const names[LISTS] = {"step", "fast", "rest", "nsolve", "coupled_its", "tension_its", "bending_its"};
 
-static PetscErrorCode Create(TestWorld *w) {
-  PetscFunctionBeginUser;
-  PetscCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
+static void Create(TestWorld *w) {
+  TestCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &w->scene));
   const SceneCoupling *c = &w->scene->coupling;
   const CouplingSetting setting = {.mobility = {.kernel = c->kernel,
                                                 .near = (NearFieldType)c->near_field,
@@ -18,38 +17,33 @@ static PetscErrorCode Create(TestWorld *w) {
                                                 .box_part = SceneHasBoxPart(w->scene),
                                                 .solver = !SceneIsProjection(w->scene)},
                                    .area_target = SceneHasAreaTarget(w->scene)};
-  PetscCall(TestWorldBuildFor(&setting, w));
-  PetscCall(TestWorldScheme(w));
-  PetscCall(SceneCheckUnused(w->scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldBuildFor(&setting, w);
+  TestWorldScheme(w);
+  TestCall(SceneCheckUnused(w->scene));
 }
 
 /* Peak memory of all ranks (bytes). */
-static PetscErrorCode PeakMemory(PetscReal *bytes) {
+static void PeakMemory(PetscReal *bytes) {
   struct rusage usage;
-  PetscFunctionBeginUser;
   (void)getrusage(RUSAGE_SELF, &usage);
   *bytes = 1024. * (PetscReal)usage.ru_maxrss;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bytes, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, bytes, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
 }
 
-static PetscErrorCode Step(TestWorld *w, PetscReal at[LISTS]) {
+static void Step(TestWorld *w, PetscReal at[LISTS]) {
   const PetscReal fast = PhaseSeconds(PHASE_FAST_SOLVE), rest = PhaseSeconds(PHASE_STEP);
   const StepReport *report = &w->scheme->report;
   PetscLogDouble start = 0;
-  PetscFunctionBeginUser;
-  PetscCall(Begin(&start));
-  PetscCall(SchemeStep(w->scheme, PETSC_MAX_REAL));
-  PetscCall(Elapsed(start, &at[WALL]));
-  PetscCheck(!*report->failure, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", report->failure);
+  Begin(&start);
+  TestCall(SchemeStep(w->scheme, PETSC_MAX_REAL));
+  Elapsed(start, &at[WALL]);
+  PetscCheckAbort(!*report->failure, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", report->failure);
   at[FAST] = PhaseSeconds(PHASE_FAST_SOLVE) - fast;
   at[REST] = PhaseSeconds(PHASE_STEP) - rest;
   at[SOLVES] = report->solves;
   at[COUPLED] = report->coupled_its;
   at[TENSION] = report->tension_its;
   at[BENDING] = report->bending_its;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static void Print(const TestWorld *w, PetscReal setup, PetscReal first, PetscReal memory, PetscInt steps,
@@ -64,31 +58,30 @@ static void Print(const TestWorld *w, PetscReal setup, PetscReal first, PetscRea
   printf("}\n");
 }
 
-static PetscErrorCode Bench(void) {
+static void Bench(void) {
   PetscInt warmup = 20, steps = 10;
   PetscReal setup, first = 0, memory, at[LISTS], *lists;
   PetscLogDouble start = 0;
   TestWorld w = {0};
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetInt(NULL, NULL, "-bench_warmup", &warmup, NULL));
-  PetscCall(PetscOptionsGetInt(NULL, NULL, "-bench_steps", &steps, NULL));
-  PetscCheck(warmup > 0 && steps > 0 && steps <= MOST_STEPS, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
-             "-bench_warmup %" PetscInt_FMT ", -bench_steps %" PetscInt_FMT ": allowed: at least 1, at most %d steps",
-             warmup, steps, MOST_STEPS);
-  PetscCall(PetscMalloc1(LISTS * steps, &lists));
-  PetscCall(Begin(&start));
-  PetscCall(Create(&w));
-  PetscCall(Elapsed(start, &setup));
+  TestCall(PetscOptionsGetInt(NULL, NULL, "-bench_warmup", &warmup, NULL));
+  TestCall(PetscOptionsGetInt(NULL, NULL, "-bench_steps", &steps, NULL));
+  PetscCheckAbort(warmup > 0 && steps > 0 && steps <= MOST_STEPS, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+                  "-bench_warmup %" PetscInt_FMT ", -bench_steps %" PetscInt_FMT
+                  ": allowed: at least 1, at most %d steps",
+                  warmup, steps, MOST_STEPS);
+  TestCall(PetscMalloc1(LISTS * steps, &lists));
+  Begin(&start);
+  Create(&w);
+  Elapsed(start, &setup);
   for (PetscInt i = 0; i < warmup + steps; i++) {
-    PetscCall(Step(&w, at));
+    Step(&w, at);
     if (!i) first = at[WALL];
     for (int k = 0; k < LISTS && i >= warmup; k++) lists[k * steps + i - warmup] = at[k];
   }
-  PetscCall(PeakMemory(&memory));
+  PeakMemory(&memory);
   if (!w.fluid->grid->rank) Print(&w, setup, first, memory, steps, lists);
-  PetscCall(PetscFree(lists));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(lists));
+  TestWorldDestroy(&w);
 }
 
 int main(int argc, char **argv) {

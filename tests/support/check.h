@@ -5,122 +5,137 @@
 
 static int check_failed;
 
-/* CHECK - state a fact; collective: it holds when it holds on every rank. */
-#define CHECK(condition, ...) PetscCall(CheckFact((condition) ? PETSC_TRUE : PETSC_FALSE, __VA_ARGS__))
+/* TestCall - a call of the library, of PETSc or of MPI: an error ends the program on all ranks, so that what calls it
+   returns nothing, or its result. */
+#define TestCall(...) PetscCallAbort(PETSC_COMM_WORLD, __VA_ARGS__)
 
-static inline PetscErrorCode PETSC_ATTRIBUTE_FORMAT(2, 3) CheckFact(PetscBool holds, const char format[], ...) {
+/* CHECK - state a fact; collective: it holds when it holds on every rank. */
+#define CHECK(condition, ...) CheckFact((condition) ? PETSC_TRUE : PETSC_FALSE, __VA_ARGS__)
+
+static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) CheckFact(PetscBool holds, const char format[], ...) {
   char text[1024];
   int here = holds ? 1 : 0, everywhere;
   va_list arguments;
-  PetscFunctionBeginUser;
   va_start(arguments, format);
   vsnprintf(text, sizeof(text), format, arguments);
   va_end(arguments);
-  PetscCallMPI(MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));
+  TestCall(MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));
   if (!everywhere) check_failed++;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s %s\n", everywhere ? "ok" : "not ok", text));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscPrintf(PETSC_COMM_WORLD, "%s %s\n", everywhere ? "ok" : "not ok", text));
 }
 
-/* TestKeep - what is to be destroyed when the program ends. */
+/* TestKeep - what is to be destroyed, or freed, when the program ends. */
 static struct {
-  PetscObject *object;
+  void **what;
+  PetscBool *is_object;
   PetscInt n, room;
 } test_kept;
 
-static inline PetscErrorCode TestKeep(PetscObject object) {
-  PetscFunctionBeginUser;
+static inline void TestKeep(void *what, PetscBool is_object) {
   if (test_kept.n == test_kept.room) {
     test_kept.room = 2 * test_kept.room + 16;
-    PetscCall(PetscRealloc(sizeof(PetscObject) * (size_t)test_kept.room, &test_kept.object));
+    TestCall(PetscRealloc(sizeof(void *) * (size_t)test_kept.room, &test_kept.what));
+    TestCall(PetscRealloc(sizeof(PetscBool) * (size_t)test_kept.room, &test_kept.is_object));
   }
-  test_kept.object[test_kept.n++] = object;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  test_kept.what[test_kept.n] = what;
+  test_kept.is_object[test_kept.n++] = is_object;
 }
 
-static inline PetscErrorCode TestDestroyKept(void) {
-  PetscFunctionBeginUser;
-  while (test_kept.n) PetscCall(PetscObjectDestroy(&test_kept.object[--test_kept.n]));
-  PetscCall(PetscFree(test_kept.object));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static inline void TestDestroyKept(void) {
+  while (test_kept.n--) {
+    PetscObject object = (PetscObject)test_kept.what[test_kept.n];
+    TestCall(test_kept.is_object[test_kept.n] ? PetscObjectDestroy(&object) : PetscFree(test_kept.what[test_kept.n]));
+  }
+  TestCall(PetscFree(test_kept.what));
+  TestCall(PetscFree(test_kept.is_object));
+}
+
+/* TestReals - n zeros, which the end of the program frees. */
+static inline PetscReal *TestReals(PetscInt n) {
+  PetscReal *x;
+  TestCall(PetscCalloc1(n, &x));
+  TestKeep(x, PETSC_FALSE);
+  return x;
 }
 
 /* TestVecs - vectors like x, up to a NULL, which the end of the program destroys. */
-static inline PetscErrorCode TestVecsLike(Vec x, va_list list) {
-  PetscFunctionBeginUser;
+static inline void TestVecsLike(Vec x, va_list list) {
   for (Vec *y; (y = va_arg(list, Vec *));) {
-    PetscCall(VecDuplicate(x, y));
-    PetscCall(TestKeep((PetscObject)*y));
+    TestCall(VecDuplicate(x, y));
+    TestKeep(*y, PETSC_TRUE);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static inline PetscErrorCode TestVecs(Vec x, ...) {
+static inline void TestVecs(Vec x, ...) {
   va_list list;
-  PetscFunctionBeginUser;
   va_start(list, x);
-  PetscCall(TestVecsLike(x, list));
+  TestVecsLike(x, list);
   va_end(list);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* TestUnit - x becomes the unit vector of entry k. Collective. */
-static inline PetscErrorCode TestUnit(PetscInt k, Vec x) {
-  PetscFunctionBeginUser;
-  PetscCall(VecSet(x, 0));
-  PetscCall(VecSetValue(x, k, 1, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(x));
-  PetscCall(VecAssemblyEnd(x));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static inline void TestUnit(PetscInt k, Vec x) {
+  TestCall(VecSet(x, 0));
+  TestCall(VecSetValue(x, k, 1, INSERT_VALUES));
+  TestCall(VecAssemblyBegin(x));
+  TestCall(VecAssemblyEnd(x));
 }
 
-/* TestApart - |x - y|/|y| in a norm; x is overwritten. TestRemoveMean - x less its mean. Collective. */
-static inline PetscErrorCode TestApart(NormType norm, Vec x, Vec y, PetscReal *apart) {
+/* TestSum, TestMost - of n numbers over all ranks, in their place. */
+static inline void TestSum(PetscMPIInt n, PetscReal x[]) {
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, x, n, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
+}
+
+static inline void TestMost(PetscMPIInt n, PetscReal x[]) {
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, x, n, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+}
+
+/* TestNorm - |x|. TestDot - <x, y>. TestApart - |x - y|/|y|; x is overwritten. TestRemoveMean - x less its mean.
+   Collective. */
+static inline PetscReal TestNorm(NormType norm, Vec x) {
   PetscReal size;
-  PetscFunctionBeginUser;
-  PetscCall(VecNorm(y, norm, &size));
-  PetscCall(VecAXPY(x, -1, y));
-  PetscCall(VecNorm(x, norm, apart));
-  *apart /= size;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecNorm(x, norm, &size));
+  return size;
 }
 
-static inline PetscErrorCode TestRemoveMean(Vec x) {
+static inline PetscReal TestDot(Vec x, Vec y) {
+  PetscScalar product;
+  TestCall(VecDot(x, y, &product));
+  return product;
+}
+
+static inline PetscReal TestApart(NormType norm, Vec x, Vec y) {
+  TestCall(VecAXPY(x, -1, y));
+  return TestNorm(norm, x) / TestNorm(norm, y);
+}
+
+static inline void TestRemoveMean(Vec x) {
   PetscScalar sum;
   PetscInt n;
-  PetscFunctionBeginUser;
-  PetscCall(VecSum(x, &sum));
-  PetscCall(VecGetSize(x, &n));
-  PetscCall(VecShift(x, -sum / n));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecSum(x, &sum));
+  TestCall(VecGetSize(x, &n));
+  TestCall(VecShift(x, -sum / n));
 }
 
 /* TestTransposed - |<A x, y> - <x, A^T y>| over the size of the terms in the sums; 1 where a product is zero.
    Collective. */
-static inline PetscErrorCode TestTransposed(Mat A, Vec x, Vec y, PetscReal *error) {
+static inline PetscReal TestTransposed(Mat A, Vec x, Vec y) {
   Vec Ax, Aty;
-  PetscReal one, two, size[4];
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(y, &Ax, NULL));
-  PetscCall(TestVecs(x, &Aty, NULL));
-  PetscCall(MatMult(A, x, Ax));
-  PetscCall(MatMultTranspose(A, y, Aty));
-  PetscCall(VecDot(Ax, y, &one));
-  PetscCall(VecDot(x, Aty, &two));
-  PetscCall(VecNorm(Ax, NORM_2, &size[0]));
-  PetscCall(VecNorm(y, NORM_2, &size[1]));
-  PetscCall(VecNorm(Aty, NORM_2, &size[2]));
-  PetscCall(VecNorm(x, NORM_2, &size[3]));
-  *error = size[0] > 0 && size[2] > 0 ? PetscAbsReal(one - two) / PetscMax(size[0] * size[1], size[2] * size[3]) : 1;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestVecs(y, &Ax, NULL);
+  TestVecs(x, &Aty, NULL);
+  TestCall(MatMult(A, x, Ax));
+  TestCall(MatMultTranspose(A, y, Aty));
+  const PetscReal size[2] = {TestNorm(NORM_2, Ax) * TestNorm(NORM_2, y), TestNorm(NORM_2, Aty) * TestNorm(NORM_2, x)};
+  const PetscReal off = PetscAbsReal(TestDot(Ax, y) - TestDot(x, Aty));
+  return size[0] > 0 && size[1] > 0 ? off / PetscMax(size[0], size[1]) : 1;
 }
 
 /* CheckMain - main() of a test program. */
-static inline int CheckMain(int argc, char **argv, PetscErrorCode (*facts)(void)) {
+static inline int CheckMain(int argc, char **argv, void (*facts)(void)) {
   if (PetvesInitialize(&argc, &argv)) return 1;
-  const PetscErrorCode error = facts();
-  if (TestDestroyKept() || PetvesFinalize() || error) return 1;
-  return check_failed ? 1 : 0;
+  facts();
+  TestDestroyKept();
+  return PetvesFinalize() || check_failed ? 1 : 0;
 }
 
 /* TestRandom - reproducible numbers in (-1, 1), the same on every rank and in every run. */
@@ -130,16 +145,14 @@ static inline PetscReal TestRandom(unsigned *state) {
 }
 
 /* TestRandomVec - entry k of the vector is number k of one sequence, whatever the number of ranks. */
-static inline PetscErrorCode TestRandomVec(unsigned seed, Vec x) {
+static inline void TestRandomVec(unsigned seed, Vec x) {
   PetscScalar *a;
   PetscInt n, first;
   unsigned state = seed;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetLocalSize(x, &n));
-  PetscCall(VecGetOwnershipRange(x, &first, NULL));
+  TestCall(VecGetLocalSize(x, &n));
+  TestCall(VecGetOwnershipRange(x, &first, NULL));
   for (PetscInt i = 0; i < first; i++) (void)TestRandom(&state);
-  PetscCall(VecGetArray(x, &a));
+  TestCall(VecGetArray(x, &a));
   for (PetscInt i = 0; i < n; i++) a[i] = TestRandom(&state);
-  PetscCall(VecRestoreArray(x, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArray(x, &a));
 }

@@ -4,24 +4,21 @@
 #include "bodies/turning.h"
 #include "problem/contrast.h"
 
-PetscErrorCode DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value) {
-  PetscFunctionBeginUser;
-  if (value == 0) PetscFunctionReturn(PETSC_SUCCESS);
+void DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value) {
+  if (value == 0) return;
   if (d->count == d->room) {
     d->room = 2 * d->room + 1000;
-    PetscCall(PetscRealloc(d->room * sizeof(*d->row), &d->row));
-    PetscCall(PetscRealloc(d->room * sizeof(*d->column), &d->column));
-    PetscCall(PetscRealloc(d->room * sizeof(*d->value), &d->value));
+    TestCall(PetscRealloc(d->room * sizeof(*d->row), &d->row));
+    TestCall(PetscRealloc(d->room * sizeof(*d->column), &d->column));
+    TestCall(PetscRealloc(d->room * sizeof(*d->value), &d->value));
   }
   d->row[d->count] = row;
   d->column[d->count] = column;
   d->value[d->count++] = value;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Begin(Coupling c, Direct *d) {
+static void Begin(Coupling c, Direct *d) {
   const PetscInt M = c->membrane->layout->M;
-  PetscFunctionBeginUser;
   *d = (Direct){.c = c, .fluid = c->fluid, .grid = c->fluid->grid};
   const PetscInt size[PARTS] = {[PART_SIGMA] = M,
                                 [PART_V] = 2 * M,
@@ -32,46 +29,42 @@ static PetscErrorCode Begin(Coupling c, Direct *d) {
                                 [PART_MEAN] = DirectMeans(d)};
   for (int k = 0; k < PARTS; k++)
     d->first[k + 1] = d->first[k] + (k <= FIELD_P ? d->grid->columns[k] * d->grid->rows[k] : size[k]);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* H, G and G^T. */
-static PetscErrorCode AddFluid(Direct *d) {
+static void AddFluid(Direct *d) {
   const Grid g = d->grid;
   const PetscReal off = d->fluid->nu / PetscSqr(g->h), h = g->h;
-  PetscFunctionBeginUser;
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt q = 0; q < g->columns[f] * g->rows[f]; q++) {
       const PetscInt i = q % g->columns[f], j = q / g->columns[f], row = DirectIndex(d, f, i, j);
       const PetscInt here = DirectIndex(d, FIELD_P, i, j), di[4] = {-1, 1, 0, 0}, dj[4] = {0, 0, -1, 1};
       const PetscInt ahead = DirectIndex(d, FIELD_P, (i + (f == FIELD_U)) % g->n[0], (j + (f == FIELD_V)) % g->n[1]);
-      PetscCall(DirectAdd(d, row, row, d->fluid->alpha + 4 * off));
+      DirectAdd(d, row, row, d->fluid->alpha + 4 * off);
       for (int k = 0; k < 4; k++) {
         const PetscInt c = i + di[k], r = j + dj[k];
         if (g->wall[k / 2] && (c < 0 || c >= g->columns[f] || r < 0 || r >= g->rows[f]))
-          PetscCall(DirectAdd(d, row, row, -off * GridWallFactor((Field)f, k / 2)));
+          DirectAdd(d, row, row, -off * GridWallFactor((Field)f, k / 2));
         else
-          PetscCall(DirectAdd(
-              d, row, DirectIndex(d, f, (c + g->columns[f]) % g->columns[f], (r + g->rows[f]) % g->rows[f]), -off));
+          DirectAdd(d, row, DirectIndex(d, f, (c + g->columns[f]) % g->columns[f], (r + g->rows[f]) % g->rows[f]),
+                    -off);
       }
-      PetscCall(DirectAdd(d, row, ahead, 1 / h));
-      PetscCall(DirectAdd(d, row, here, -1 / h));
-      PetscCall(DirectAdd(d, ahead, row, 1 / h));
-      PetscCall(DirectAdd(d, here, row, -1 / h));
+      DirectAdd(d, row, ahead, 1 / h);
+      DirectAdd(d, row, here, -1 / h);
+      DirectAdd(d, ahead, row, 1 / h);
+      DirectAdd(d, here, row, -1 / h);
       if (f < DirectMeans(d)) { /* g, and its own row, the sum of all velocities */
-        PetscCall(DirectAdd(d, row, d->first[PART_MEAN] + f, 1));
-        PetscCall(DirectAdd(d, d->first[PART_MEAN] + f, row, 1));
+        DirectAdd(d, row, d->first[PART_MEAN] + f, 1);
+        DirectAdd(d, d->first[PART_MEAN] + f, row, 1);
       }
     }
-  PetscCall(DirectAdd(d, d->first[FIELD_P], d->first[FIELD_P], -1 / d->fluid->nu)); /* p_0 = 0 */
-  PetscFunctionReturn(PETSC_SUCCESS);
+  DirectAdd(d, d->first[FIELD_P], d->first[FIELD_P], -1 / d->fluid->nu); /* p_0 = 0 */
 }
 
 /* E: -E w, what the markers have of it, in the rows of velocities, E^T F in the momentum. */
-static PetscErrorCode AddInterpolation(Direct *d) {
+static void AddInterpolation(Direct *d) {
   const Grid g = d->grid;
   const PetscReal part = MobilityGridPart(d->c->mobility, d->fluid->alpha);
-  PetscFunctionBeginUser;
   for (PetscInt q = 0; q < 2 * d->c->bodies->layout->M; q++) {
     const Stencil *s = &d->c->markers->stencil[q];
     const int f = q % 2;
@@ -80,224 +73,202 @@ static PetscErrorCode AddInterpolation(Direct *d) {
         const PetscReal weight = s->weight[1][b] * s->weight[0][a];
         const PetscInt i = DirectEntry(g, 0, s->first[0] + a), j = DirectEntry(g, 1, s->first[1] + b);
         if (i < 0 || j < 0 || i >= g->columns[f] || j >= g->rows[f]) continue;
-        PetscCall(DirectAdd(d, DirectRow(d, q), DirectIndex(d, f, i, j), -part * weight));
-        PetscCall(DirectAdd(d, DirectIndex(d, f, i, j), d->first[PART_F] + q, weight));
+        DirectAdd(d, DirectRow(d, q), DirectIndex(d, f, i, j), -part * weight);
+        DirectAdd(d, DirectIndex(d, f, i, j), d->first[PART_F] + q, weight);
       }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One vesicle's rows between sigma, V and F, a column at a time by unit vectors:
    V + (v/a0) dV/dt - E w + h^2 C F = k,  F - Dm^T sigma/h^2 - ((c_b ds D4 + K_sigma)/(h^2 a0)) V = 0,  Dm V/h^2 = g,
    and with the area target the part m of the motion along z as an unknown of its own: V + .. + z m = k,  z.V = s. */
-static PetscErrorCode AddVesicle(Direct *d, PetscInt v) {
+static void AddVesicle(Direct *d, PetscInt v) {
   const Membrane m = d->c->membrane;
   const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v), sigma = d->first[PART_SIGMA] + first;
   const PetscInt V = d->first[PART_V] + 2 * first, F = d->first[PART_F] + 2 * first, area = d->first[PART_AREA] + v;
   const PetscReal h2 = PetscSqr(d->grid->h), a0 = d->fluid->a0;
   const Turning *turning = (const Turning *)ForcesFind(d->c->forces, "turning");
   PetscReal *unit, *D, *force, *turned;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(2 * n, &unit, 2 * n * n, &D, 2 * n, &force, 2 * n, &turned));
-  PetscCall(LawBlock(d->c->law, v, D));
+  TestCall(PetscCalloc4(2 * n, &unit, 2 * n * n, &D, 2 * n, &force, 2 * n, &turned));
+  TestCall(LawBlock(d->c->law, v, D));
   for (PetscInt c = 0; c < 2 * n; c++) {
     unit[c] = 1;
     for (PetscInt k = 0; k < n; k++) {
-      PetscCall(DirectAdd(d, sigma + k, V + c, D[2 * n * k + c]));
-      PetscCall(DirectAdd(d, F + c, sigma + k, -D[2 * n * k + c]));
+      DirectAdd(d, sigma + k, V + c, D[2 * n * k + c]);
+      DirectAdd(d, F + c, sigma + k, -D[2 * n * k + c]);
     }
-    PetscCall(DirectAdd(d, F + c, F + c, 1));
-    PetscCall(PetscArrayzero(force, 2 * n));
+    DirectAdd(d, F + c, F + c, 1);
+    TestCall(PetscArrayzero(force, 2 * n));
     if (m->bending > 0) MembraneVesicleBending(m, v, -m->bending / (h2 * a0), unit, force);
     MembraneVesiclePull(m, v, -1 / (h2 * a0), turning->tension + first, unit, force);
-    PetscCall(PetscArraycpy(turned, unit, 2 * n));
+    TestCall(PetscArraycpy(turned, unit, 2 * n));
     MembraneLabelDerivative(m, v, d->c->treading[v] / a0, unit, turned);
     for (PetscInt r = 0; r < 2 * n; r++) {
-      PetscCall(DirectAdd(d, F + r, V + c, force[r]));
-      if (!d->c->mobility->contrast) PetscCall(DirectAdd(d, V + r, V + c, turned[r]));
+      DirectAdd(d, F + r, V + c, force[r]);
+      if (!d->c->mobility->contrast) DirectAdd(d, V + r, V + c, turned[r]);
     }
-    if (LawAimsAreas(d->c->law)) PetscCall(DirectAdd(d, V + c, area, d->c->law->z[2 * first + c]));
-    if (LawAimsAreas(d->c->law)) PetscCall(DirectAdd(d, area, V + c, d->c->law->z[2 * first + c]));
+    if (LawAimsAreas(d->c->law)) DirectAdd(d, V + c, area, d->c->law->z[2 * first + c]);
+    if (LawAimsAreas(d->c->law)) DirectAdd(d, area, V + c, d->c->law->z[2 * first + c]);
     unit[c] = 0;
   }
-  PetscCall(PetscFree4(unit, D, force, turned));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree4(unit, D, force, turned));
 }
 
 /* The springs of a repulsion: -(K_rep/(h^2 a0)) V in the rows of F. */
-static PetscErrorCode AddSprings(Direct *d) {
+static void AddSprings(Direct *d) {
   const Repulsion r = (Repulsion)ForcesFind(d->c->forces, "contact");
   const PetscReal scale = -1 / (PetscSqr(d->grid->h) * d->fluid->a0);
-  PetscFunctionBeginUser;
   for (PetscInt q = 0; r && q < r->count; q++) {
     const Spring *s = &r->spring[q];
     for (PetscInt i = 0; i < 2 * s->n; i++)
       for (PetscInt j = 0; j < 2 * s->n; j++)
-        PetscCall(DirectAdd(
-            d, d->first[PART_F] + 2 * s->marker[i / 2] + i % 2, d->first[PART_V] + 2 * s->marker[j / 2] + j % 2,
-            scale * s->stiffness * s->weight[i / 2] * s->normal[i % 2] * s->weight[j / 2] * s->normal[j % 2]));
+        DirectAdd(d, d->first[PART_F] + 2 * s->marker[i / 2] + i % 2, d->first[PART_V] + 2 * s->marker[j / 2] + j % 2,
+                  scale * s->stiffness * s->weight[i / 2] * s->normal[i % 2] * s->weight[j / 2] * s->normal[j % 2]);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* h^2 (C + D) F of the near field in the rows of velocities, h^2 beta N N^T F in those of each obstacle. */
-static PetscErrorCode AddNearField(Direct *d) {
+static void AddNearField(Direct *d) {
   const Obstacles o = d->c->bodies->obstacles;
   const PetscInt n = 2 * d->c->bodies->layout->M, solid = d->first[PART_SOLID];
   const PetscReal h2 = PetscSqr(d->grid->h);
   PetscReal *C;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n * n, &C));
-  if (d->c->mobility->near) PetscCall(NearFieldAdd(d->c->mobility->near, h2, PETSC_TRUE, 0, n / 2, C));
-  for (PetscInt k = 0; k < n * n; k++) PetscCall(DirectAdd(d, DirectRow(d, k % n), d->first[PART_F] + k / n, C[k]));
-  PetscCall(PetscFree(C));
+  TestCall(PetscCalloc1(n * n, &C));
+  if (d->c->mobility->near) TestCall(NearFieldAdd(d->c->mobility->near, h2, PETSC_TRUE, 0, n / 2, C));
+  for (PetscInt k = 0; k < n * n; k++) DirectAdd(d, DirectRow(d, k % n), d->first[PART_F] + k / n, C[k]);
+  TestCall(PetscFree(C));
   for (PetscInt b = 0; o && b < o->layout->bodies; b++)
     for (PetscInt i = 2 * o->layout->start[b]; i < 2 * o->layout->start[b + 1]; i++)
       for (PetscInt j = 2 * o->layout->start[b]; j < 2 * o->layout->start[b + 1]; j++)
-        PetscCall(DirectAdd(d, solid + i, solid + j, h2 * o->beta * o->N[i] * o->N[j]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+        DirectAdd(d, solid + i, solid + j, h2 * o->beta * o->N[i] * o->N[j]);
 }
 
-static PetscErrorCode Assemble(Direct *d, Mat *A) {
+static void Assemble(Direct *d, Mat *A) {
   const PetscInt n = d->first[PARTS];
-  PetscFunctionBeginUser;
-  PetscCall(AddFluid(d));
-  PetscCall(AddInterpolation(d));
-  PetscCall(AddSprings(d));
-  for (PetscInt v = 0; v < d->c->membrane->layout->bodies; v++) PetscCall(AddVesicle(d, v));
-  PetscCall(AddNearField(d));
-  if (d->c->mobility->contrast) PetscCall(DirectAddContrast(d));
-  PetscCall(MatCreate(PETSC_COMM_SELF, A));
-  PetscCall(MatSetSizes(*A, n, n, n, n));
-  PetscCall(MatSetType(*A, MATSEQAIJ));
-  PetscCall(MatSetPreallocationCOO(*A, d->count, d->row, d->column));
-  PetscCall(MatSetValuesCOO(*A, d->value, INSERT_VALUES));
-  PetscCall(PetscFree(d->row));
-  PetscCall(PetscFree(d->column));
-  PetscCall(PetscFree(d->value));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  AddFluid(d);
+  AddInterpolation(d);
+  AddSprings(d);
+  for (PetscInt v = 0; v < d->c->membrane->layout->bodies; v++) AddVesicle(d, v);
+  AddNearField(d);
+  if (d->c->mobility->contrast) DirectAddContrast(d);
+  TestCall(MatCreate(PETSC_COMM_SELF, A));
+  TestCall(MatSetSizes(*A, n, n, n, n));
+  TestCall(MatSetType(*A, MATSEQAIJ));
+  TestCall(MatSetPreallocationCOO(*A, d->count, d->row, d->column));
+  TestCall(MatSetValuesCOO(*A, d->value, INSERT_VALUES));
+  TestCall(PetscFree(d->row));
+  TestCall(PetscFree(d->column));
+  TestCall(PetscFree(d->value));
 }
 
 /* Factors of the rows (side 0) and of the unknowns (side 1) that make all entries numbers without a unit, velocities
    staying as they are: pivots do not depend on what lengths and times are measured in. */
-static PetscErrorCode Factors(const Direct *d, int side, Vec factors) {
+static void Factors(const Direct *d, int side, Vec factors) {
   const PetscReal h = d->grid->h, force = side ? d->fluid->nu / (h * h) : h * h / d->fluid->nu, own = side ? 1 : force;
   const PetscReal factor[PARTS] = {
       own, own, side ? force * h : h, side ? force * h * h : h * h, 1, force, side ? force : 1, 1, 1, side ? force : 1};
   PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayWrite(factors, &a));
+  TestCall(VecGetArrayWrite(factors, &a));
   for (int k = 0; k < PARTS; k++)
     for (PetscInt i = d->first[k]; i < d->first[k + 1]; i++) a[i] = factor[k];
-  PetscCall(VecRestoreArrayWrite(factors, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArrayWrite(factors, &a));
 }
 
 /* n numbers of a vector from `first` on. */
-static PetscErrorCode Take(Vec from, PetscInt first, PetscInt n, PetscScalar to[]) {
+static void Take(Vec from, PetscInt first, PetscInt n, PetscScalar to[]) {
   const PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(from, &a));
-  PetscCall(PetscArraycpy(to, a + first, n));
-  PetscCall(VecRestoreArrayRead(from, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecGetArrayRead(from, &a));
+  TestCall(PetscArraycpy(to, a + first, n));
+  TestCall(VecRestoreArrayRead(from, &a));
 }
 
-static PetscErrorCode Give(const Direct *d, Vec x, int part, Vec to) {
+static void Give(const Direct *d, Vec x, int part, Vec to) {
   PetscScalar *a;
   PetscInt n;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetLocalSize(to, &n));
-  PetscCall(VecGetArray(to, &a));
-  PetscCall(Take(x, d->first[part], n, a));
-  PetscCall(VecRestoreArray(to, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecGetLocalSize(to, &n));
+  TestCall(VecGetArray(to, &a));
+  Take(x, d->first[part], n, a);
+  TestCall(VecRestoreArray(to, &a));
 }
 
 /* The near field of the forces that are known; of a contrast's motion that is known -B in k, the dipoles in f and the
    divergence, and the mean velocity that goes with them. */
-static PetscErrorCode RightHandSide(const Direct *d, const CoupledProblem *q, Vec rhs) {
+static void RightHandSide(const Direct *d, const CoupledProblem *q, Vec rhs) {
   const PetscInt *first = d->first, V = first[PART_F] - first[PART_V];
   const Mobility m = d->c->mobility;
   const Layout l = d->c->membrane->layout;
   const MobilityKnown *known = &q->known;
   const PetscScalar *G;
   PetscScalar *k, *b;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(known->G, &G));
-  PetscCall(VecGetArray(q->k, &k));
-  PetscCall(MobilityAddLayers(m, known->F, known->G, k));
+  TestCall(VecGetArrayRead(known->G, &G));
+  TestCall(VecGetArray(q->k, &k));
+  TestCall(MobilityAddLayers(m, known->F, known->G, k));
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) k[i] -= MobilityWeight(m, v) * G[i];
-  PetscCall(VecRestoreArray(q->k, &k));
-  if (m->contrast) PetscCall(DoubleLayerSpread(m->contrast, G, known->f));
-  PetscCall(VecRestoreArrayRead(known->G, &G));
-  PetscCall(MobilityBegin(m, known));
-  PetscCall(VecSet(rhs, 0));
-  PetscCall(VecGetArray(rhs, &b));
-  PetscCall(Take(known->f->values, 0, first[FIELD_P], b));
-  if (known->f->source) PetscCall(Take(known->f->source, 0, first[PART_SIGMA] - first[FIELD_P], b + first[FIELD_P]));
-  PetscCall(Take(q->g, 0, V / 2, b + first[PART_SIGMA]));
-  PetscCall(Take(q->k, 0, V, b + first[PART_V]));
-  PetscCall(Take(q->k, V, first[PART_JUMP] - first[PART_SOLID], b + first[PART_SOLID]));
+  TestCall(VecRestoreArray(q->k, &k));
+  if (m->contrast) TestCall(DoubleLayerSpread(m->contrast, G, known->f));
+  TestCall(VecRestoreArrayRead(known->G, &G));
+  TestCall(MobilityBegin(m, known));
+  TestCall(VecSet(rhs, 0));
+  TestCall(VecGetArray(rhs, &b));
+  Take(known->f->values, 0, first[FIELD_P], b);
+  if (known->f->source) Take(known->f->source, 0, first[PART_SIGMA] - first[FIELD_P], b + first[FIELD_P]);
+  Take(q->g, 0, V / 2, b + first[PART_SIGMA]);
+  Take(q->k, 0, V, b + first[PART_V]);
+  Take(q->k, V, first[PART_JUMP] - first[PART_SOLID], b + first[PART_SOLID]);
   for (PetscInt v = first[PART_AREA]; v < first[PART_MEAN]; v++) b[v] = d->c->law->speed[v - first[PART_AREA]];
   for (PetscInt f = 0; f < DirectMeans(d); f++)
     b[first[PART_MEAN] + f] = known->f->mean[f] * d->grid->n[0] * d->grid->n[1];
-  PetscCall(VecRestoreArray(rhs, &b));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArray(rhs, &b));
 }
 
 /* A x = b by MUMPS and two steps of iterative refinement. Pivoting in a saddle-point matrix needs more room than MUMPS
    expects: four times, ICNTL(14) in per cent. */
-static PetscErrorCode SolveLU(Mat A, Vec b, Vec x) {
+static void SolveLU(Mat A, Vec b, Vec x) {
   KSP ksp;
   PC pc;
   Mat F;
-  PetscFunctionBeginUser;
-  PetscCall(KSPCreate(PETSC_COMM_SELF, &ksp));
-  PetscCall(KSPSetType(ksp, KSPRICHARDSON));
-  PetscCall(KSPSetNormType(ksp, KSP_NORM_NONE));
-  PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 3));
-  PetscCall(KSPSetOperators(ksp, A, A));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(PCFactorSetUpMatSolverType(pc));
-  PetscCall(PCFactorGetMatrix(pc, &F));
-  PetscCall(MatMumpsSetIcntl(F, 14, 300));
-  PetscCall(KSPSetErrorIfNotConverged(ksp, PETSC_TRUE));
-  PetscCall(KSPSolve(ksp, b, x));
-  PetscCall(KSPDestroy(&ksp));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(KSPCreate(PETSC_COMM_SELF, &ksp));
+  TestCall(KSPSetType(ksp, KSPRICHARDSON));
+  TestCall(KSPSetNormType(ksp, KSP_NORM_NONE));
+  TestCall(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 3));
+  TestCall(KSPSetOperators(ksp, A, A));
+  TestCall(KSPGetPC(ksp, &pc));
+  TestCall(PCSetType(pc, PCLU));
+  TestCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  TestCall(PCFactorSetUpMatSolverType(pc));
+  TestCall(PCFactorGetMatrix(pc, &F));
+  TestCall(MatMumpsSetIcntl(F, 14, 300));
+  TestCall(KSPSetErrorIfNotConverged(ksp, PETSC_TRUE));
+  TestCall(KSPSolve(ksp, b, x));
+  TestCall(KSPDestroy(&ksp));
 }
 
-PetscErrorCode DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
+void DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
   Direct d;
   Mat A;
   Vec b, x, rows, columns;
   PetscScalar mean;
-  PetscFunctionBeginUser;
-  PetscCall(Begin(c, &d));
-  PetscCall(Assemble(&d, &A));
-  PetscCall(MatCreateVecs(A, &x, &b));
-  PetscCall(MatCreateVecs(A, &columns, &rows));
-  PetscCall(Factors(&d, 0, rows));
-  PetscCall(Factors(&d, 1, columns));
-  PetscCall(MatDiagonalScale(A, rows, columns));
-  PetscCall(RightHandSide(&d, q, b));
-  PetscCall(VecPointwiseMult(b, b, rows));
-  PetscCall(SolveLU(A, b, x));
-  PetscCall(VecPointwiseMult(x, x, columns));
-  PetscCall(Give(&d, x, FIELD_U, w));
-  PetscCall(Give(&d, x, FIELD_P, p));
-  PetscCall(VecSum(p, &mean));
-  PetscCall(VecShift(p, -mean / ((PetscReal)d.grid->n[0] * d.grid->n[1])));
-  PetscCall(Give(&d, x, PART_SIGMA, q->sigma));
-  PetscCall(Give(&d, x, PART_V, q->V));
-  if (q->solid) PetscCall(Give(&d, x, PART_SOLID, q->solid));
-  if (q->solid) PetscCall(VecScale(q->solid, PetscSqr(d.grid->h)));
-  PetscCall(MatDestroy(&A));
+  Begin(c, &d);
+  Assemble(&d, &A);
+  TestCall(MatCreateVecs(A, &x, &b));
+  TestCall(MatCreateVecs(A, &columns, &rows));
+  Factors(&d, 0, rows);
+  Factors(&d, 1, columns);
+  TestCall(MatDiagonalScale(A, rows, columns));
+  RightHandSide(&d, q, b);
+  TestCall(VecPointwiseMult(b, b, rows));
+  SolveLU(A, b, x);
+  TestCall(VecPointwiseMult(x, x, columns));
+  Give(&d, x, FIELD_U, w);
+  Give(&d, x, FIELD_P, p);
+  TestCall(VecSum(p, &mean));
+  TestCall(VecShift(p, -mean / ((PetscReal)d.grid->n[0] * d.grid->n[1])));
+  Give(&d, x, PART_SIGMA, q->sigma);
+  Give(&d, x, PART_V, q->V);
+  if (q->solid) Give(&d, x, PART_SOLID, q->solid);
+  if (q->solid) TestCall(VecScale(q->solid, PetscSqr(d.grid->h)));
+  TestCall(MatDestroy(&A));
   Vec *all[] = {&b, &x, &rows, &columns};
-  for (int k = 0; k < 4; k++) PetscCall(VecDestroy(all[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 4; k++) TestCall(VecDestroy(all[k]));
 }

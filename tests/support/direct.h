@@ -1,12 +1,13 @@
 /* The coupled problem by a sparse LU: what the solution of the scheme coupled is compared with. On one rank. */
 #pragma once
+#include "check.h"
 #include "krylov/solver.h"
 
 /* DirectSolve - [H + B E/a0, G, S; G^T; S^T] with the near field, at the coupling's markers, p of zero mean. The
    markers' velocity V and the force F = Dm^T sigma/h^2 + (c_b ds/(h^2 a0)) D4 V on them are unknowns of their own, as
    are the obstacles' F and the jump of a viscosity contrast, so that the matrix is sparse. Takes what is
    known, g and k of the problem, f with the states before it, and changes f and k; gives w, p, sigma, V and solid. */
-PetscErrorCode DirectSolve(Coupling coupling, const CoupledProblem *problem, Vec w, Vec p);
+void DirectSolve(Coupling coupling, const CoupledProblem *problem, Vec w, Vec p);
 
 /* Where the unknowns stand: the fields of the grid, then tension, V of the vesicles' markers, F of the vesicles' and of
    the obstacles' markers, the jump, areas, and uniform forces g that hold the mean velocity. */
@@ -32,12 +33,12 @@ typedef struct {
   PetscScalar *value;
 } Direct;
 
-PetscErrorCode DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value);
+void DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value);
 
 /* DirectAddContrast - B V in the rows of V, the double layer in those of obstacles, J - Q (1 - ratio) (V +
    (treading/a0) dV/dt) = 0, the dipoles of J in the momentum and the divergence, and in the rows of the mean velocity.
  */
-PetscErrorCode DirectAddContrast(Direct *d);
+void DirectAddContrast(Direct *d);
 
 static inline PetscInt DirectIndex(const Direct *d, int field, PetscInt i, PetscInt j) {
   return d->first[field] + j * d->grid->columns[field] + i;

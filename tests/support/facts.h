@@ -2,7 +2,7 @@
 #pragma once
 #include "world.h"
 
-PetscErrorCode Facts(void);
+void Facts(void);
 
 int main(int argc, char **argv) {
   return CheckMain(argc, argv, Facts);

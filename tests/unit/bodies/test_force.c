@@ -51,12 +51,11 @@ typedef struct {
 } Shown;
 
 /* Three steps, with the spring where it is given: with or without its part of the preconditioner. */
-static PetscErrorCode Run(const char options[], PointSpring *spring, PetscBool dense, Shown *shown) {
+static void Run(const char options[], PointSpring *spring, PetscBool dense, Shown *shown) {
   const char *last;
   TestWorld w;
-  PetscFunctionBeginUser;
-  PetscCall(TestScene(options, &w.scene));
-  PetscCall(TestWorldBuild(&w));
+  TestScene(&w.scene, "%s", options);
+  TestWorldBuild(&w);
   if (spring) {
     const Force force = {.name = "spring",
                          .reach = FORCE_OUTSIDE,
@@ -66,17 +65,17 @@ static PetscErrorCode Run(const char options[], PointSpring *spring, PetscBool d
                          .dense = dense ? PointSpringDense : NULL,
                          .energy = PointSpringEnergy};
     spring->layout = w.layout;
-    PetscCall(ForcesAdd(w.coupling->forces, &force));
+    TestCall(ForcesAdd(w.coupling->forces, &force));
   }
-  PetscCall(TestWorldScheme(&w));
-  PetscCall(RecordCreate(w.layout->bodies, &w.scene->obstacles, w.coupling->forces, &shown->record));
+  TestWorldScheme(&w);
+  TestCall(RecordCreate(w.layout->bodies, &w.scene->obstacles, w.coupling->forces, &shown->record));
   shown->its = 0;
   for (int k = 0; k < 3; k++) {
-    PetscCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
-    PetscCheck(!*w.scheme->report.failure, w.scene->comm, PETSC_ERR_LIB, "%s", w.scheme->report.failure);
+    TestCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
+    PetscCheckAbort(!*w.scheme->report.failure, w.scene->comm, PETSC_ERR_LIB, "%s", w.scheme->report.failure);
     shown->its += w.scheme->report.coupled_its;
   }
-  PetscCall(RecordTake(&shown->record, w.scheme));
+  TestCall(RecordTake(&shown->record, w.scheme));
   last = strrchr(shown->record.header, ',');
   shown->header_ends_with_spring = !strcmp(last, ",energy_spring");
   shown->energy = strtod(strrchr(shown->record.text, ',') + 1, NULL);
@@ -84,25 +83,23 @@ static PetscErrorCode Run(const char options[], PointSpring *spring, PetscBool d
   if (spring) { /* the energy by hand */
     PetscReal energy = 0;
     const PetscScalar *X;
-    PetscCall(VecGetArrayRead(w.scheme->state.X, &X));
+    TestCall(VecGetArrayRead(w.scheme->state.X, &X));
     for (PetscInt k = 0; k < 2 * w.layout->n; k++) energy += 0.5 * spring->k * PetscSqr(X[k] - spring->P[k % 2]);
-    PetscCall(VecRestoreArrayRead(w.scheme->state.X, &X));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPI_SUM, w.scene->comm));
+    TestCall(VecRestoreArrayRead(w.scheme->state.X, &X));
+    TestSum(1, &energy);
     CHECK(PetscAbsReal(shown->energy / energy - 1) < 1e-13, "the last column is the spring's energy, %.6g", energy);
   }
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&w);
 }
 
 /* Soft springs to points around the vesicle: it comes closer to the point by a way in proportion to the spring's
    stiffness; both stresses of the channel have the spring, and agree. */
-static PetscErrorCode CheckSoft(const Shown *without, PetscReal x, PetscReal y) {
+static void CheckSoft(const Shown *without, PetscReal x, PetscReal y) {
   PointSpring soft = {.k = 0.05, .P = {x, y}}, softer = {.k = 0.025, .P = {x, y}};
   const PetscReal *none = without->record.last, d[2] = {x - without->center[0], y - without->center[1]};
   Shown one, half;
-  PetscFunctionBeginUser;
-  PetscCall(Run(shear, &soft, PETSC_TRUE, &one));
-  PetscCall(Run(shear, &softer, PETSC_TRUE, &half));
+  Run(shear, &soft, PETSC_TRUE, &one);
+  Run(shear, &softer, PETSC_TRUE, &half);
   CHECK(one.header_ends_with_spring == 1, "to %g,%g: series.csv has the column energy_spring", x, y);
   PetscReal along = 0, ratio = 0, way[2];
   for (int c = 0; c < 2; c++) {
@@ -120,36 +117,31 @@ static PetscErrorCode CheckSoft(const Shown *without, PetscReal x, PetscReal y) 
         row[COLUMN_VISCOSITY_WALL]);
   CHECK(PetscAbsReal(row[COLUMN_VISCOSITY] - none[COLUMN_VISCOSITY]) > 1e-3,
         "to %g,%g: the spring adds %.4f to the viscosity", x, y, row[COLUMN_VISCOSITY] - none[COLUMN_VISCOSITY]);
-  PetscCall(RecordDestroy(&one.record));
-  PetscCall(RecordDestroy(&half.record));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(RecordDestroy(&one.record));
+  TestCall(RecordDestroy(&half.record));
 }
 
 /* A stiff spring is solved in fewer iterations because the preconditioner has it, and with the same result. */
-static PetscErrorCode CheckStiff(PetscReal k) {
+static void CheckStiff(PetscReal k) {
   PointSpring stiff = {.k = k, .P = {0.1, 0.1}};
   Shown with, without;
-  PetscFunctionBeginUser;
-  PetscCall(Run(large_steps, &stiff, PETSC_TRUE, &with));
-  PetscCall(Run(large_steps, &stiff, PETSC_FALSE, &without));
+  Run(large_steps, &stiff, PETSC_TRUE, &with);
+  Run(large_steps, &stiff, PETSC_FALSE, &without);
   CHECK(with.its < without.its, "k = %g: %d iterations, %d without the preconditioner's part", k, (int)with.its,
         (int)without.its);
   CHECK(PetscAbsReal(with.energy / without.energy - 1) < 1e-4, "k = %g: energy %.8g with and %.8g without", k,
         with.energy, without.energy);
-  PetscCall(RecordDestroy(&with.record));
-  PetscCall(RecordDestroy(&without.record));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(RecordDestroy(&with.record));
+  TestCall(RecordDestroy(&without.record));
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   Shown without;
-  PetscFunctionBeginUser;
-  PetscCall(Run(shear, NULL, PETSC_FALSE, &without));
+  Run(shear, NULL, PETSC_FALSE, &without);
   CHECK(without.header_ends_with_spring == 0, "without the spring there is no column energy_spring");
-  PetscCall(CheckSoft(&without, 0.6, 0.2));
-  PetscCall(CheckSoft(&without, -0.5, -0.5));
-  PetscCall(CheckStiff(10));
-  PetscCall(CheckStiff(30));
-  PetscCall(RecordDestroy(&without.record));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckSoft(&without, 0.6, 0.2);
+  CheckSoft(&without, -0.5, -0.5);
+  CheckStiff(10);
+  CheckStiff(30);
+  TestCall(RecordDestroy(&without.record));
 }

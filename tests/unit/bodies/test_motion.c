@@ -5,10 +5,9 @@
 
 #define N 5
 
-static PetscErrorCode CheckMotion(const char name[], const BodyMotion *m, PetscReal t) {
+static void CheckMotion(const char name[], const BodyMotion *m, PetscReal t) {
   const PetscReal step = 1e-5, rest[2 * N] = {1.5, 2, 1, 2.7, 0.4, 2, 1, 1.6, 1.2, 1.8}, later = t + 0.4;
   PetscReal X[2 * N], before[2 * N], after[2 * N], U[2], rate = 0, off = 0, far = 0, reach = 0;
-  PetscFunctionBeginUser;
   MotionCarry(m, (Instant){t - step}, N, rest, before);
   MotionCarry(m, (Instant){t}, N, rest, X);
   MotionCarry(m, (Instant){t + step}, N, rest, after);
@@ -29,17 +28,14 @@ static PetscErrorCode CheckMotion(const char name[], const BodyMotion *m, PetscR
   MotionTurn(m, (Instant){t}, (Instant){later}, N - 1, before + 2);
   for (PetscInt k = 2; k < 2 * N; k++) off = PetscMax(off, PetscAbsReal(before[k] - after[k]));
   CHECK(off < 1e-14, "%s, t = %g: vectors turn with the body, error %.1e", name, t, off);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   BodyMotion m = {
       .center = {1, 2}, .velocity = {0.3, -0.2}, .rotation = 1.3, .carried = PETSC_TRUE, .turned = PETSC_TRUE};
   const BodyMotion rest = {.center = {1, 2}};
-  PetscFunctionBeginUser;
-  PetscCall(CheckMotion("at rest", &rest, 0.7));
-  for (PetscReal t = 0; t < 1; t += 0.4) PetscCall(CheckMotion("steady", &m, t));
+  CheckMotion("at rest", &rest, 0.7);
+  for (PetscReal t = 0; t < 1; t += 0.4) CheckMotion("steady", &m, t);
   m.frequency = 2.5;
-  for (PetscReal t = 0; t < 1; t += 0.4) PetscCall(CheckMotion("swinging", &m, t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscReal t = 0; t < 1; t += 0.4) CheckMotion("swinging", &m, t);
 }

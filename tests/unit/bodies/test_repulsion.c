@@ -21,26 +21,23 @@ static const Case cases[] = {{"repulsion", "-vesicle_center 0.8,1.5,2.05,1.6", {
                              {"adhesion", "-vesicle_center 0.8,1.5,2.05,1.6", {20, 0.13, 0.3, 0.3}, PETSC_FALSE}};
 
 /* The energy of both vesicles. */
-static PetscErrorCode FindEnergy(const Force *force, const PetscReal X[], PetscReal *energy) {
+static void FindEnergy(const Force *force, const PetscReal X[], PetscReal *energy) {
   PetscReal E[2] = {0, 0};
-  PetscFunctionBeginUser;
-  PetscCall(force->energy(force->context, (Instant){0}, X, E));
+  TestCall(force->energy(force->context, (Instant){0}, X, E));
   *energy = E[0] + E[1];
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Largest difference of the force from the energy's slope, over the largest force. */
-static PetscErrorCode CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
+static void CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
   const PetscReal step = 1e-6;
   PetscReal *F, around[2], off = 0, largest = 0, sum[2] = {0, 0};
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * l->M, &F));
-  PetscCall(r->law(r->context, (Instant){0}, X, F));
+  TestCall(PetscCalloc1(2 * l->M, &F));
+  TestCall(r->law(r->context, (Instant){0}, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
     for (int side = 0; side < 2; side++) {
       X[k] = x + (side ? step : -step);
-      PetscCall(FindEnergy(r, X, &around[side]));
+      FindEnergy(r, X, &around[side]);
     }
     X[k] = x;
     off = PetscMax(off, PetscAbsReal(F[k] + (around[1] - around[0]) / (2 * step)));
@@ -51,27 +48,25 @@ static PetscErrorCode CheckSlope(const Case *c, const Force *r, Layout l, PetscR
         off);
   CHECK(PetscAbsReal(sum[0]) < 1e-12 && (c->wall ? sum[1] > 0.01 : PetscAbsReal(sum[1]) < 1e-12),
         "%s: forces add up to %.1g, %.3g", c->name, sum[0], sum[1]);
-  PetscCall(PetscFree(F));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(F));
 }
 
 /* At X*, push - K_rep X is the force; K_rep is symmetric and takes energy. */
-static PetscErrorCode CheckSprings(const Case *c, const Force *r, Layout l, const PetscReal X[]) {
+static void CheckSprings(const Case *c, const Force *r, Layout l, const PetscReal X[]) {
   PetscReal *F, *x, *y, *Kx, *Ky, off = 0, products[3] = {0, 0, 0};
   unsigned seed = 5;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
-  PetscCall(r->place(r->context, (Instant){0}, X));
-  PetscCall(r->law(r->context, (Instant){0}, X, F));
-  PetscCall(r->known(r->context, 1, X, F));
-  PetscCall(r->rate(r->context, 1, X, F));
+  TestCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
+  TestCall(r->place(r->context, (Instant){0}, X));
+  TestCall(r->law(r->context, (Instant){0}, X, F));
+  TestCall(r->known(r->context, 1, X, F));
+  TestCall(r->rate(r->context, 1, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     off = PetscMax(off, PetscAbsReal(F[k]));
     x[k] = TestRandom(&seed);
     y[k] = TestRandom(&seed);
   }
-  PetscCall(r->rate(r->context, 1, x, Kx));
-  PetscCall(r->rate(r->context, 1, y, Ky));
+  TestCall(r->rate(r->context, 1, x, Kx));
+  TestCall(r->rate(r->context, 1, y, Ky));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     products[0] += x[k] * Ky[k];
     products[1] += y[k] * Kx[k];
@@ -81,57 +76,50 @@ static PetscErrorCode CheckSprings(const Case *c, const Force *r, Layout l, cons
         c->name, (int)((Repulsion)r->context)->count, off);
   CHECK(PetscAbsReal(products[0] - products[1]) < 1e-12 && products[2] >= 0, "%s: K_rep is symmetric, x.K_rep x = %.3g",
         c->name, products[2]);
-  PetscCall(PetscFree5(F, x, y, Kx, Ky));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree5(F, x, y, Kx, Ky));
 }
 
 /* With a range shorter than every film there is neither spring nor force nor energy. */
-static PetscErrorCode CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
+static void CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
   struct _p_Scene near = *m->scene;
   PetscReal *F, energy = 0, largest = 0;
   Force r;
-  PetscFunctionBeginUser;
   near.repulsion = c->law;
   near.repulsion.range = near.repulsion.band = 1e-3;
-  PetscCall(ForceCreate_Contact(bodies, grid, &near, &r));
-  PetscCall(PetscCalloc1(2 * m->M, &F));
-  PetscCall(r.place(r.context, (Instant){0}, X));
-  PetscCall(r.law(r.context, (Instant){0}, X, F));
-  PetscCall(FindEnergy(&r, X, &energy));
+  TestCall(ForceCreate_Contact(bodies, grid, &near, &r));
+  TestCall(PetscCalloc1(2 * m->M, &F));
+  TestCall(r.place(r.context, (Instant){0}, X));
+  TestCall(r.law(r.context, (Instant){0}, X, F));
+  FindEnergy(&r, X, &energy);
   for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
   CHECK(((Repulsion)r.context)->count == 0 && energy == 0 && largest == 0,
         "%s: out of range there are %d springs and no force", c->name, (int)((Repulsion)r.context)->count);
-  PetscCall(PetscFree(F));
-  PetscCall(r.destroy(r.context));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(F));
+  TestCall(r.destroy(r.context));
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
+void Facts(void) {
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
-    char options[1024];
     TestMembrane m;
     Bodies bodies;
     Force r;
     Grid grid;
     PetscReal *X;
-    PetscCall(PetscSNPrintf(options, sizeof(options), "%s%s", scene, cases[k].centers));
-    PetscCall(TestMembraneCreate(options, &m));
-    PetscCall(GridCreate(&m.scene->fluid, &grid));
-    PetscCall(BodiesCreate(m.membrane, NULL, &bodies));
+    TestMembraneCreate(&m, "%s%s", scene, cases[k].centers);
+    TestCall(GridCreate(&m.scene->fluid, &grid));
+    TestCall(BodiesCreate(m.membrane, NULL, &bodies));
     struct _p_Scene near = *m.scene;
     near.repulsion = cases[k].law;
-    PetscCall(ForceCreate_Contact(bodies, grid, &near, &r));
-    PetscCall(PetscMalloc1(2 * m.M, &X));
-    PetscCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
-    PetscCall(CheckSlope(&cases[k], &r, m.layout, X));
-    PetscCall(CheckSprings(&cases[k], &r, m.layout, X));
-    PetscCall(CheckRange(&cases[k], &m, bodies, grid, X));
-    PetscCall(PetscFree(X));
-    PetscCall(r.destroy(r.context));
-    PetscCall(BodiesDestroy(&bodies));
-    PetscCall(GridDestroy(&grid));
-    PetscCall(TestMembraneDestroy(&m));
+    TestCall(ForceCreate_Contact(bodies, grid, &near, &r));
+    TestCall(PetscMalloc1(2 * m.M, &X));
+    TestCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
+    CheckSlope(&cases[k], &r, m.layout, X);
+    CheckSprings(&cases[k], &r, m.layout, X);
+    CheckRange(&cases[k], &m, bodies, grid, X);
+    TestCall(PetscFree(X));
+    TestCall(r.destroy(r.context));
+    TestCall(BodiesDestroy(&bodies));
+    TestCall(GridDestroy(&grid));
+    TestMembraneDestroy(&m);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,7 +45,7 @@ static PetscReal Distance(const PetscReal p[2], PetscInt n, const PetscReal Y[],
 }
 
 /* Every contact is the nearest edge, its normal and weights lead back to the point, and none is missed. */
-static PetscErrorCode CheckNearest(PetscReal period_x, PetscReal period_y, PetscReal reach) {
+static void CheckNearest(PetscReal period_x, PetscReal period_y, PetscReal reach) {
   const Circle circles[CURVES] = {{0, 0, 1},   {2.05, 0.1, 1},  {0.4, 2.2, 1.1},
                                   {5, 5, 0.4}, {2.3, 2.2, 0.7}, {-1.5, 1.4, 0.6}};
   const PetscInt start[CURVES + 1] = START;
@@ -53,10 +53,9 @@ static PetscErrorCode CheckNearest(PetscReal period_x, PetscReal period_y, Petsc
   PetscReal X[2 * CURVES * POINTS], off = 0, away = 0;
   PetscInt n, wanted = 0;
   CurveContact *c;
-  PetscFunctionBeginUser;
   Place(CURVES, circles, POINTS, X);
   const CurveSet set = {CURVES, CURVES, start, NULL, X, period, PETSC_FALSE};
-  PetscCall(CurveContacts(&set, reach, &n, &c));
+  TestCall(CurveContacts(&set, reach, &n, &c));
   for (PetscInt p = 0; p < CURVES * POINTS; p++)
     for (PetscInt w = 0; w < CURVES; w++)
       wanted += Distance(X + 2 * p, POINTS, X + 2 * start[w], period, p / POINTS == w ? PETSC_TRUE : PETSC_FALSE) <
@@ -77,75 +76,68 @@ static PetscErrorCode CheckNearest(PetscReal period_x, PetscReal period_y, Petsc
   CHECK(n == wanted && off < 1e-13 && away < 1e-13,
         "periods %g, %g: %d contacts nearer than %g (%d), off by %.1g, feet by %.1g", period_x, period_y, (int)n, reach,
         (int)wanted, off, away);
-  PetscCall(PetscFree(c));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(c));
 }
 
 /* Two circles, on a line through both centres or over a seam, that overlap by -gap where it is
    negative. */
-static PetscErrorCode CheckGap(PetscReal gap, PetscReal period, PetscReal tolerance) {
+static void CheckGap(PetscReal gap, PetscReal period, PetscReal tolerance) {
   const Circle circles[2] = {{0.3, 0, 1}, {period > 0 ? 0.3 + 2 + gap - period : 2.3 + gap, 0, 1}};
   const PetscInt start[3] = {0, POINTS, 2 * POINTS};
   const PetscReal periods[2] = {period, 0};
   PetscReal X[4 * POINTS], least;
   CurveGap *gaps;
   PetscInt n;
-  PetscFunctionBeginUser;
   Place(2, circles, POINTS, X);
   const CurveSet set = {2, 2, start, NULL, X, periods, PETSC_TRUE};
-  PetscCall(CurveGaps(&set, 0.2, &n, &gaps));
-  PetscCall(CurveLeastGap(&set, &least));
+  TestCall(CurveGaps(&set, 0.2, &n, &gaps));
+  TestCall(CurveLeastGap(&set, &least));
   const PetscReal found = n ? gaps[0].distance : NAN;
   CHECK(n == (gap < 0.2) && (!n || PetscAbsReal(found - gap) < tolerance) && PetscAbsReal(least - gap) < tolerance,
         "circles %g apart, period %g: %g, least of all %g", gap, period, found, least);
   if (n) CHECK(gaps[0].curve[0] == 0 && gaps[0].curve[1] == 1, "   of the two");
-  PetscCall(PetscFree(gaps));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(gaps));
 }
 
 /* One circle alone has no gap, with an image it has that to it. */
-static PetscErrorCode CheckAlone(void) {
+static void CheckAlone(void) {
   const Circle circle = {0, 0, 1};
   const PetscInt start[2] = {0, POINTS};
   const PetscReal none[2] = {0, 0}, box[2] = {5, 2.25};
   PetscReal X[2 * POINTS], gap[2];
-  PetscFunctionBeginUser;
   Place(1, &circle, POINTS, X);
   const CurveSet sets[2] = {{1, 1, start, NULL, X, none, PETSC_TRUE}, {1, 1, start, NULL, X, box, PETSC_TRUE}};
-  for (int k = 0; k < 2; k++) PetscCall(CurveLeastGap(&sets[k], &gap[k]));
+  for (int k = 0; k < 2; k++) TestCall(CurveLeastGap(&sets[k], &gap[k]));
   CHECK(PetscIsNanReal(gap[0]) && PetscAbsReal(gap[1] - 0.25) < 1e-3, "one circle: %g alone, %g to its image", gap[0],
         gap[1]);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Circles with a film between the first two (0.1), to the wall x_max (0.14) and, where y is periodic, from the lowest
    to the highest (0.05). Against the spacings the first or the last is thinnest, or that of the wall where the others
    have more points. */
-static PetscErrorCode CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, PetscInt w, PetscReal thickness) {
+static void CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, PetscInt w, PetscReal thickness) {
   const Circle circles[4] = {{-1.6, 0, 1}, {0.5, 0, 1}, {2.36, 0, 0.5}, {-1.6, 2.475, 0.475}};
   const PetscInt start[5] = {0, POINTS, 2 * POINTS, 3 * POINTS, 4 * POINTS};
   const CurveRoom room = {
       .box = {-4, 3, -1.05, 2.95}, .period = {0, images ? 4 : 0}, .wall = {PETSC_TRUE, PETSC_FALSE}};
   PetscReal X[8 * POINTS], ds[4];
   CurveFilm film;
-  PetscFunctionBeginUser;
   Place(4, circles, POINTS, X);
   for (int k = 0; k < 4; k++) ds[k] = (k == 2 ? 1 : coarse) * 2 * PETSC_PI * circles[k].radius / POINTS;
   const CurveSet set = {4, 4, start, NULL, X, room.period, PETSC_TRUE};
-  PetscCall(CurveThinnestFilm(&set, ds, &room, 2, &film));
+  TestCall(CurveThinnestFilm(&set, ds, &room, 2, &film));
   const PetscReal spacing = PetscMax(ds[v], w < 0 ? 0 : ds[w]);
   CHECK(film.pair[0] == v && film.pair[1] == w && PetscAbsReal(film.thickness - thickness) < 6e-3 &&
             PetscAbsReal(film.spacings * spacing - film.thickness) < 1e-14,
         "film of %d and %d: %g thick, %g spacings", (int)film.pair[0], (int)film.pair[1], film.thickness,
         film.spacings);
-  PetscCall(CurveThinnestFilm(&set, ds, &room, 0.9 * film.spacings, &film));
+  TestCall(CurveThinnestFilm(&set, ds, &room, 0.9 * film.spacings, &film));
   CHECK(film.pair[0] == 0 && film.pair[1] == 0 && film.thickness == 0, "   none below that");
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A circle against a curve that does not move, `gap` below its lowest point: half a circle, open, with its solid
    within, or a line across the period, with its solid below or (back) above, near whose end the circle is. */
-static PetscErrorCode CheckSolid(CurveType type, PetscBool back, PetscReal gap) {
+static void CheckSolid(CurveType type, PetscBool back, PetscReal gap) {
   const Circle circle = {type == CURVE_OPEN ? 0.3 : 2.9, 0, 1};
   const PetscInt start[3] = {0, POINTS, 2 * POINTS};
   const PetscReal period[2] = {type == CURVE_OPEN ? 0 : 6, 0}, along = back ? 6 : -6;
@@ -153,7 +145,6 @@ static PetscErrorCode CheckSolid(CurveType type, PetscBool back, PetscReal gap) 
   PetscReal X[4 * POINTS];
   CurveGap *gaps;
   PetscInt n;
-  PetscFunctionBeginUser;
   Place(1, &circle, POINTS, X);
   for (PetscInt k = 0; k < POINTS; k++) {
     const PetscReal t = PETSC_PI * (PetscReal)k / (POINTS - 1);
@@ -161,50 +152,46 @@ static PetscErrorCode CheckSolid(CurveType type, PetscBool back, PetscReal gap) 
     X[2 * (POINTS + k) + 1] = -1 - gap - (type == CURVE_OPEN ? 2 - 2 * PetscSinReal(t) : 0);
   }
   const CurveSet set = {2, 1, start, kind, X, period, PETSC_TRUE};
-  PetscCall(CurveGaps(&set, 0.2, &n, &gaps));
+  TestCall(CurveGaps(&set, 0.2, &n, &gaps));
   const PetscReal found = n ? gaps[0].distance : NAN;
   CHECK(n == 1 && gaps[0].curve[0] == 0 && gaps[0].curve[1] == 1 &&
             (back ? found < -gap + 1e-3 : PetscAbsReal(found - gap) < 6e-3),
         "a circle %g from a curve that %s%s: %g", gap, type == CURVE_OPEN ? "is open" : "spans the period",
         back ? ", on its solid's side" : "", found);
-  PetscCall(PetscFree(gaps));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(gaps));
 }
 
 /* A line that comes back over itself crosses itself, one across a period does not cross its image. */
-static PetscErrorCode CheckLine(PetscReal swing, PetscBool crosses) {
+static void CheckLine(PetscReal swing, PetscBool crosses) {
   const PetscInt start[2] = {0, POINTS};
   const PetscReal period[2] = {6, 0};
   const CurveKind kind = {CURVE_SPANNING, {6, 0}};
   PetscReal X[2 * POINTS];
   PetscInt pair[2];
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < POINTS; k++) {
     const PetscReal t = 2 * PETSC_PI * (PetscReal)k / POINTS;
     X[2 * k] = 6 * (PetscReal)k / POINTS + swing * PetscSinReal(2 * t);
     X[2 * k + 1] = PetscCosReal(t);
   }
   const CurveSet set = {1, 1, start, &kind, X, period, PETSC_TRUE};
-  PetscCall(CurvesCross(&set, pair));
+  TestCall(CurvesCross(&set, pair));
   CHECK((pair[0] >= 0) == crosses, "a line across a period that swings by %g %s itself", swing,
         pair[0] >= 0 ? "crosses" : "does not cross");
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define TIMES 5
 
 /* Of an open curve polynomials of fifth degree are exact; forces on finer points keep their sum. */
-static PetscErrorCode CheckOpen(void) {
+static void CheckOpen(void) {
   const CurveKind open = {.type = CURVE_OPEN};
   PetscReal X[2 * POINTS], T[2 * POINTS], Y[2 * POINTS * TIMES], weight[POINTS];
   PetscReal off[2] = {0, 0}, sums = 0, least = 0;
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < POINTS; k++) {
     X[2 * k] = PetscPowRealInt(0.1 * (PetscReal)k, 5);
     X[2 * k + 1] = (PetscReal)k;
   }
-  PetscCall(CurveTangents(&open, NULL, POINTS, X, T));
-  PetscCall(CurveFinePoints(&open, POINTS, X, TIMES, Y));
+  TestCall(CurveTangents(&open, NULL, POINTS, X, T));
+  TestCall(CurveFinePoints(&open, POINTS, X, TIMES, Y));
   for (PetscInt k = 0; k < POINTS; k++)
     off[0] = PetscMax(off[0], PetscAbsReal(T[2 * k] - 0.5 * PetscPowRealInt(0.1 * (PetscReal)k, 4)) +
                                   PetscAbsReal(T[2 * k + 1] - 1));
@@ -222,28 +209,25 @@ static PetscErrorCode CheckOpen(void) {
   CHECK(off[0] < 1e-9 && off[1] < 1e-9 && sums < 1e-13 && least >= 0,
         "an open curve: tangents off by %.1e, points by %.1e, sums of weights by %.1e, least one near ends %g", off[0],
         off[1], sums, least);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 4; k++) PetscCall(CheckNearest(k & 1 ? 5.3 : 0, k & 2 ? 6.5 : 0, k < 2 ? 0.4 : 0.15));
+void Facts(void) {
+  for (int k = 0; k < 4; k++) CheckNearest(k & 1 ? 5.3 : 0, k & 2 ? 6.5 : 0, k < 2 ? 0.4 : 0.15);
   for (int k = 0; k < 2; k++) {
-    PetscCall(CheckGap(0.15, k ? 7 : 0, 6e-3));
-    PetscCall(CheckGap(0.02, k ? 7 : 0, 2e-3));
-    PetscCall(CheckGap(-0.02, k ? 7 : 0, 2e-3));
-    PetscCall(CheckGap(1.5, k ? 9 : 0, 2e-3));
+    CheckGap(0.15, k ? 7 : 0, 6e-3);
+    CheckGap(0.02, k ? 7 : 0, 2e-3);
+    CheckGap(-0.02, k ? 7 : 0, 2e-3);
+    CheckGap(1.5, k ? 9 : 0, 2e-3);
   }
   for (int k = 0; k < 2; k++) {
-    PetscCall(CheckSolid(CURVE_OPEN, PETSC_FALSE, k ? 0.15 : 0.02));
-    PetscCall(CheckSolid(CURVE_SPANNING, PETSC_FALSE, k ? 0.15 : 0.02));
-    PetscCall(CheckLine(k ? 2.5 : 0.3, k ? PETSC_TRUE : PETSC_FALSE));
+    CheckSolid(CURVE_OPEN, PETSC_FALSE, k ? 0.15 : 0.02);
+    CheckSolid(CURVE_SPANNING, PETSC_FALSE, k ? 0.15 : 0.02);
+    CheckLine(k ? 2.5 : 0.3, k ? PETSC_TRUE : PETSC_FALSE);
   }
-  PetscCall(CheckSolid(CURVE_SPANNING, PETSC_TRUE, 0.02));
-  PetscCall(CheckOpen());
-  PetscCall(CheckAlone());
-  PetscCall(CheckFilm(PETSC_FALSE, 1, 0, 1, 0.1));
-  PetscCall(CheckFilm(PETSC_TRUE, 1, 0, 3, 0.05));
-  PetscCall(CheckFilm(PETSC_FALSE, 1.0 / 3, 2, -2, 0.14));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckSolid(CURVE_SPANNING, PETSC_TRUE, 0.02);
+  CheckOpen();
+  CheckAlone();
+  CheckFilm(PETSC_FALSE, 1, 0, 1, 0.1);
+  CheckFilm(PETSC_TRUE, 1, 0, 3, 0.05);
+  CheckFilm(PETSC_FALSE, 1.0 / 3, 2, -2, 0.14);
 }

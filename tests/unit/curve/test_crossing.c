@@ -15,15 +15,14 @@ static PetscBool CountPair(void *context, PetscInt i, PetscInt j, const PetscRea
   return PETSC_FALSE;
 }
 
-static PetscErrorCode CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, PetscReal reach) {
+static void CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, PetscReal reach) {
   const PetscReal period[2] = {period_x, period_y};
   Count c = {.n = n};
   PetscReal *X;
   PetscInt wanted = 0;
   unsigned seed = 7;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * n, &X));
-  PetscCall(PetscCalloc1(n * n, &c.seen));
+  TestCall(PetscMalloc1(2 * n, &X));
+  TestCall(PetscCalloc1(n * n, &c.seen));
   for (PetscInt k = 0; k < 2 * n; k++) X[k] = 3 * TestRandom(&seed); /* some are outside of a period */
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = i + 1; j < n; j++) {
@@ -35,19 +34,18 @@ static PetscErrorCode CheckPairs(PetscInt n, PetscReal period_x, PetscReal perio
       }
       if (square < reach * reach) wanted++;
     }
-  PetscCall(PairsWithin(n, X, NULL, period, reach, CountPair, &c));
+  TestCall(PairsWithin(n, X, NULL, period, reach, CountPair, &c));
   CHECK(c.pairs == wanted && !c.repeated, "%d points, periods %g and %g: %d pairs nearer than %g, %d by the cells",
         (int)n, period_x, period_y, (int)wanted, reach, (int)c.pairs);
-  PetscCall(PetscArrayzero(c.seen, n * n));
+  TestCall(PetscArrayzero(c.seen, n * n));
   c.pairs = 0;
   for (int half = 0; half < 2; half++) {
     const PetscInt part[2] = {half * (n / 3), half ? n : n / 3};
-    PetscCall(PairsWithin(n, X, part, period, reach, CountPair, &c));
+    TestCall(PairsWithin(n, X, part, period, reach, CountPair, &c));
   }
   CHECK(c.pairs == wanted && !c.repeated, "%d points in two parts: %d pairs", (int)n, (int)c.pairs);
-  PetscCall(PetscFree(X));
-  PetscCall(PetscFree(c.seen));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(X));
+  TestCall(PetscFree(c.seen));
 }
 
 #define POINTS 40
@@ -66,38 +64,34 @@ static void Place(const Loop *loop, PetscReal away, PetscReal X[]) {
   }
 }
 
-static PetscErrorCode CheckLoops(const char what[], const Loop loop[2], PetscReal period_x, PetscBool smooth,
-                                 PetscInt first, PetscInt second) {
+static void CheckLoops(const char what[], const Loop loop[2], PetscReal period_x, PetscBool smooth, PetscInt first,
+                       PetscInt second) {
   const PetscInt start[3] = {0, POINTS, 2 * POINTS};
   const PetscReal period[2] = {period_x, 0};
   PetscReal X[4 * POINTS];
   PetscInt pair[2];
-  PetscFunctionBeginUser;
   for (int v = 0; v < 2; v++) Place(&loop[v], 0, X + 2 * v * POINTS);
   const CurveSet set = {2, 2, start, NULL, X, period, smooth};
-  PetscCall(CurvesCross(&set, pair));
+  TestCall(CurvesCross(&set, pair));
   const PetscInt low = PetscMin(pair[0], pair[1]), high = PetscMax(pair[0], pair[1]);
   CHECK(low == first && high == second, "%s, %s: %d and %d cross", what, smooth ? "curves" : "polygons", (int)low,
         (int)high);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The tip in the hollow, first in order, must not hide two others that cross. */
-static PetscErrorCode CheckBehind(const Loop nested[2], const Loop over[2]) {
+static void CheckBehind(const Loop nested[2], const Loop over[2]) {
   const PetscInt start[5] = {0, POINTS, 2 * POINTS, 3 * POINTS, 4 * POINTS};
   const PetscReal period[2] = {0, 0};
   PetscReal X[8 * POINTS];
   PetscInt pair[2];
-  PetscFunctionBeginUser;
   for (int v = 0; v < 4; v++) Place(v < 2 ? &nested[v] : &over[v - 2], v < 2 ? 0 : 9, X + 2 * v * POINTS);
   const CurveSet set = {4, 4, start, NULL, X, period, PETSC_TRUE};
-  PetscCall(CurvesCross(&set, pair));
+  TestCall(CurvesCross(&set, pair));
   CHECK(PetscMin(pair[0], pair[1]) == 2 && PetscMax(pair[0], pair[1]) == 3, "behind a tip in a hollow: %d and %d cross",
         (int)pair[0], (int)pair[1]);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const Loop apart[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 1.001, 1, 0.5, 0, 1}},
                     over[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0.99, 1, 0.5, 0, 1}},
                     inside[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 0.5, 0.2, 0, 1}},
@@ -106,23 +100,21 @@ PetscErrorCode Facts(void) {
                     seam[2] = {{0, 0, 1, 0.5, 0, 1}, {2.5, 0, 1, 0.5, 0, 1}},
                     /* the right-hand one's tip in the other's hollow end: chords of the hollow cut into the tip */
       nested[2] = {{0, 0, 0.4, 1, -0.3, 1}, {0.7105, 0.0785, 0.6, 0.01, 0, 1}};
-  PetscFunctionBeginUser;
   for (int n = 1; n <= 300; n = 3 * n + 2)
-    for (int k = 0; k < 4; k++) PetscCall(CheckPairs(n, k & 1 ? 4 : 0, k & 2 ? 5 : 0, n < 30 ? 1.9 : 0.3));
-  PetscCall(CheckPairs(50, 4, 4, 100));
+    for (int k = 0; k < 4; k++) CheckPairs(n, k & 1 ? 4 : 0, k & 2 ? 5 : 0, n < 30 ? 1.9 : 0.3);
+  CheckPairs(50, 4, 4, 100);
   for (int smooth = 0; smooth < 2; smooth++) {
     const PetscBool curves = smooth ? PETSC_TRUE : PETSC_FALSE;
-    PetscCall(CheckLoops("one above the other", apart, 0, curves, -1, -1));
-    PetscCall(CheckLoops("a little lower", over, 0, curves, 0, 1));
-    PetscCall(CheckLoops("one in the other", inside, 0, curves, -1, -1));
-    PetscCall(CheckLoops("two equal ones", same, 0, curves, 0, 1));
-    PetscCall(CheckLoops("a figure of eight", eight, 0, curves, 1, 1));
-    PetscCall(CheckLoops("beside one another", seam, 0, curves, -1, -1));
-    PetscCall(CheckLoops("over a seam", seam, 4, curves, 0, 1));
-    PetscCall(CheckLoops("over its own seam", apart, 1.9, curves, 0, 0));
+    CheckLoops("one above the other", apart, 0, curves, -1, -1);
+    CheckLoops("a little lower", over, 0, curves, 0, 1);
+    CheckLoops("one in the other", inside, 0, curves, -1, -1);
+    CheckLoops("two equal ones", same, 0, curves, 0, 1);
+    CheckLoops("a figure of eight", eight, 0, curves, 1, 1);
+    CheckLoops("beside one another", seam, 0, curves, -1, -1);
+    CheckLoops("over a seam", seam, 4, curves, 0, 1);
+    CheckLoops("over its own seam", apart, 1.9, curves, 0, 0);
   }
-  PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_FALSE, 0, 1));
-  PetscCall(CheckLoops("a tip in a hollow", nested, 0, PETSC_TRUE, -1, -1));
-  PetscCall(CheckBehind(nested, over));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckLoops("a tip in a hollow", nested, 0, PETSC_FALSE, 0, 1);
+  CheckLoops("a tip in a hollow", nested, 0, PETSC_TRUE, -1, -1);
+  CheckBehind(nested, over);
 }

@@ -54,66 +54,59 @@ static PetscReal Axes(PetscInt n, PetscBool mixed, PetscReal fraction, PetscReal
   return scale;
 }
 
-static PetscErrorCode CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, PetscReal fraction) {
+static void CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, PetscReal fraction) {
   const PetscReal box = (s->box[1] - s->box[0]) * (s->box[3] - s->box[2]);
   PetscReal *axes, *X, part, other, mean[2] = {0, 0}, same = 0, apart = 0;
   PackingSpec again = *s;
   Pose *pose, *second;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(2 * n, &axes, 2 * n * POINTS, &X, n, &pose, n, &second));
+  TestCall(PetscMalloc4(2 * n, &axes, 2 * n * POINTS, &X, n, &pose, n, &second));
   (void)Axes(n, mixed, fraction, box, axes);
-  PetscCall(PackRandomly(s, n, axes, pose, &part));
+  TestCall(PackRandomly(s, n, axes, pose, &part));
   for (PetscInt i = 0; i < n; i++) {
     Outline(axes + 2 * i, pose + i, X + 2 * POINTS * i);
     mean[0] += (2 * PetscSqr(pose[i].along[0]) - 1) / n; /* cos, sin of twice the angle */
     mean[1] += 2 * pose[i].along[0] * pose[i].along[1] / n;
   }
-  PetscCall(PackRandomly(s, n, axes, second, &other));
+  TestCall(PackRandomly(s, n, axes, second, &other));
   for (PetscInt i = 0; i < n; i++) same = PetscMax(same, PetscAbsReal(pose[i].center[0] - second[i].center[0]));
   again.seed++;
-  PetscCall(PackRandomly(&again, n, axes, second, &other));
+  TestCall(PackRandomly(&again, n, axes, second, &other));
   for (PetscInt i = 0; i < n; i++) apart += PetscAbsReal(pose[i].center[0] - second[i].center[0]) / n;
   const char *kind = mixed ? "mixed" : "equal";
-  CHECK(part >= 1, "%d %s ellipses at %g: all have their size", (int)n, kind, (double)fraction);
-  CHECK(LeastDistance(s, n, X) >= s->gap, "they are %.3g apart, at least %g", (double)LeastDistance(s, n, X),
-        (double)s->gap);
+  CHECK(part >= 1, "%d %s ellipses at %g: all have their size", (int)n, kind, fraction);
+  CHECK(LeastDistance(s, n, X) >= s->gap, "they are %.3g apart, at least %g", LeastDistance(s, n, X), s->gap);
   CHECK(WallDistance(s, n, X) >= s->wall_gap * (1 - 1e-12), "they are %.3g from walls, at least %g",
-        (double)WallDistance(s, n, X), (double)s->wall_gap);
+        WallDistance(s, n, X), s->wall_gap);
   CHECK(PetscHypotReal(mean[0], mean[1]) < 5 / PetscSqrtReal(n), "their directions have the mean %.2g",
-        (double)PetscHypotReal(mean[0], mean[1]));
+        PetscHypotReal(mean[0], mean[1]));
   CHECK(same == 0 && apart > 0.1 * (s->box[1] - s->box[0]), "the same seed gives the same, another one another");
-  PetscCall(PetscFree4(axes, X, pose, second));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree4(axes, X, pose, second));
 }
 
-static PetscErrorCode CheckLattice(void) {
+static void CheckLattice(void) {
   const PackingSpec s = {{0, 12, -2, 4}, {PETSC_TRUE, PETSC_FALSE}, 0.05, 0.05, 1};
   const PetscReal along[2] = {0.8, 0.6};
   PetscReal axes[2 * 18], X[2 * 18 * POINTS], part;
   Pose pose[18];
-  PetscFunctionBeginUser;
   (void)Axes(18, PETSC_FALSE, 0.3, 72, axes);
-  PetscCall(PackLattice(&s, 18, axes, along, pose, &part));
+  TestCall(PackLattice(&s, 18, axes, along, pose, &part));
   for (PetscInt i = 0; i < 18; i++) Outline(axes + 2 * i, pose + i, X + 2 * POINTS * i);
   CHECK(part >= 1 && LeastDistance(&s, 18, X) >= s.gap && WallDistance(&s, 18, X) >= s.gap, "a lattice at .3");
   (void)Axes(18, PETSC_FALSE, 0.9, 72, axes);
-  PetscCall(PackLattice(&s, 18, axes, along, pose, &part));
-  CHECK(part < 0.9 && part > 0.3, "at .9 it has room for %.2g", (double)(0.9 * part));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PackLattice(&s, 18, axes, along, pose, &part));
+  CHECK(part < 0.9 && part > 0.3, "at .9 it has room for %.2g", (0.9 * part));
 }
 
-static PetscErrorCode CheckTooMany(void) {
+static void CheckTooMany(void) {
   const PackingSpec s = {{0, 8, 0, 8}, {PETSC_TRUE, PETSC_TRUE}, 0.02, 0.02, 1};
   PetscReal axes[40], part;
   Pose pose[20];
-  PetscFunctionBeginUser;
   (void)Axes(20, PETSC_FALSE, 0.95, 64, axes);
-  PetscCall(PackRandomly(&s, 20, axes, pose, &part));
-  CHECK(part < 1, "at .95 only %.2g have their size", (double)part);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PackRandomly(&s, 20, axes, pose, &part));
+  CHECK(part < 1, "at .95 only %.2g have their size", part);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   const PackingSpec channel = {{0, 12, -3, 3}, {PETSC_TRUE, PETSC_FALSE}, 0.03, 0.03, 1},
                     walls = {{-5, 5, 0, 8}, {PETSC_FALSE, PETSC_FALSE}, 0.02, 0.1, 7},
                     periodic = {{0, 6, 0, 6}, {PETSC_TRUE, PETSC_TRUE}, 0.03, 0.03, 3},
@@ -122,13 +115,11 @@ PetscErrorCode Facts(void) {
                             0.02,
                             0.02,
                             1}; /* images of itself are neighbours */
-  PetscFunctionBeginUser;
-  PetscCall(CheckRandom(&channel, 60, PETSC_FALSE, 0.3));
-  PetscCall(CheckRandom(&channel, 48, PETSC_TRUE, 0.52));
-  PetscCall(CheckRandom(&walls, 60, PETSC_FALSE, 0.52));
-  PetscCall(CheckRandom(&periodic, 36, PETSC_FALSE, 0.55));
-  PetscCall(CheckRandom(&tiny, 3, PETSC_FALSE, 0.3));
-  PetscCall(CheckLattice());
-  PetscCall(CheckTooMany());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckRandom(&channel, 60, PETSC_FALSE, 0.3);
+  CheckRandom(&channel, 48, PETSC_TRUE, 0.52);
+  CheckRandom(&walls, 60, PETSC_FALSE, 0.52);
+  CheckRandom(&periodic, 36, PETSC_FALSE, 0.55);
+  CheckRandom(&tiny, 3, PETSC_FALSE, 0.3);
+  CheckLattice();
+  CheckTooMany();
 }

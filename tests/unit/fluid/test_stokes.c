@@ -24,23 +24,18 @@ static PetscReal FillingValue(const void *ctx, Field f, PetscInt i, PetscInt j) 
 }
 
 /* Fill a velocity (or a pressure) with an exact field. */
-static PetscErrorCode Fill(Grid g, Exact exact, PetscReal t, void *ctx, PetscBool pressure, Vec x) {
+static void Fill(Grid g, Exact exact, PetscReal t, void *ctx, PetscBool pressure, Vec x) {
   const Filling q = {g, exact, t, ctx};
-  PetscFunctionBeginUser;
-  PetscCall(TestFill(g, pressure ? FIELD_P : FIELD_U, pressure ? FIELD_P : FIELD_V, FillingValue, &q, x));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestFill(g, pressure ? FIELD_P : FIELD_U, pressure ? FIELD_P : FIELD_V, FillingValue, &q, x);
 }
 
 /* sqrt(h^2 SUM (x - y)^2), for pressures without their means. */
-static PetscErrorCode Distance(Grid g, Vec x, Vec y, PetscBool pressure, PetscReal *distance) {
+static PetscReal Distance(Grid g, Vec x, Vec y, PetscBool pressure) {
   Vec d;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(x, &d, NULL));
-  PetscCall(VecWAXPY(d, -1, x, y));
-  if (pressure) PetscCall(TestRemoveMean(d));
-  PetscCall(VecNorm(d, NORM_2, distance));
-  *distance *= g->h;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestVecs(x, &d, NULL);
+  TestCall(VecWAXPY(d, -1, x, y));
+  if (pressure) TestRemoveMean(d);
+  return TestNorm(NORM_2, d) * g->h;
 }
 
 /* First mode of a channel, and a Taylor-Green vortex in a periodic box: exactly divergence free on the grid too. */
@@ -52,33 +47,28 @@ static PetscReal Vortex(Field f, const PetscReal X[2], PetscReal t, void *ctx) {
   return f == FIELD_U ? PetscCosReal(x) * PetscSinReal(y) : -PetscSinReal(x) * PetscCosReal(y);
 }
 
-static PetscErrorCode CheckDecay(const char name[], const char bc[], Exact exact, PetscReal wave, PetscInt directions) {
+static void CheckDecay(const char name[], const char bc[], Exact exact, PetscReal wave, PetscInt directions) {
   const PetscInt steps = 8;
   const PetscReal dt = 0.03, nu = 0.4, h = 1.0 / 24;
   const PetscReal lambda = directions * 4 / (h * h) * PetscSqr(PetscSinReal(wave * h / 2));
-  char options[512];
   TestWorld f;
   Vec want;
-  PetscReal error, pressure;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(
-      options, sizeof(options),
+  TestRunCreate(
+      &f,
       "-domain_box 0,1,0,1 -domain_cells 24,24 %s -scheme_type split -vesicle_shape none -fluid_viscosity 0.4 "
       "-time_step 0.03",
-      bc));
-  PetscCall(TestRunCreate(options, &f));
-  PetscCall(TestVecs(f.scheme->state.w, &want, NULL));
-  PetscCall(Fill(f.fluid->grid, exact, 0, NULL, PETSC_FALSE, f.scheme->state.w));
-  PetscCall(VecCopy(f.scheme->state.w, want));
-  for (PetscInt k = 0; k < steps; k++) PetscCall(SchemeStep(f.scheme, PETSC_MAX_REAL));
-  PetscCall(VecScale(want, PetscPowRealInt(1 + dt * nu * lambda, (int)-steps)));
-  PetscCall(TestApart(NORM_2, want, f.scheme->state.w, &error));
-  PetscCall(VecNorm(f.scheme->state.p, NORM_INFINITY, &pressure));
+      bc);
+  TestVecs(f.scheme->state.w, &want, NULL);
+  Fill(f.fluid->grid, exact, 0, NULL, PETSC_FALSE, f.scheme->state.w);
+  TestCall(VecCopy(f.scheme->state.w, want));
+  for (PetscInt k = 0; k < steps; k++) TestCall(SchemeStep(f.scheme, PETSC_MAX_REAL));
+  TestCall(VecScale(want, PetscPowRealInt(1 + dt * nu * lambda, (int)-steps)));
+  const PetscReal error = TestApart(NORM_2, want, f.scheme->state.w);
+  const PetscReal pressure = TestNorm(NORM_INFINITY, f.scheme->state.p);
   CHECK(error < 1e-12, "%s decays as backward Euler says, error %.1e", name, error);
   CHECK(pressure < 1e-12, "%s makes no pressure, %.1e", name, pressure);
   CHECK(f.scheme->report.solves == 3, "%s: 3 scalar solves a step", name);
-  PetscCall(TestWorldDestroy(&f));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&f);
 }
 
 /* The manufactured flow on [0, 1] x [0, 3/4]: stream function g(t) P(x) P(y), pressure q(t) Q(x) Q(y). */
@@ -116,52 +106,46 @@ static PetscReal ManufacturedField(Field f, const PetscReal X[2], PetscReal t, v
   return gt * u - m->nu * g * laplacian + q * Q(m, 0, x, f == FIELD_U) * Q(m, 1, y, f == FIELD_V);
 }
 
-/* Run to t = 0.2 from the exact start; velocity and pressure at the end, the caller destroys them and the flow. */
-static PetscErrorCode RunManufactured(PetscInt n, PetscInt steps, Manufactured *m, TestWorld *f, PetscReal *div) {
-  char options[512];
+/* Run to t = 0.2 from the exact start, which the caller destroys; the largest divergence. */
+static PetscReal RunManufactured(PetscInt n, PetscInt steps, Manufactured *m, TestWorld *f) {
   const PetscReal dt = 0.2 / steps;
-  Grid g;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(
-      options, sizeof(options),
+  PetscReal div = 0;
+  TestRunCreate(
+      f,
       "-domain_box 0,1,0,0.75 -domain_cells %d,%d -domain_bc_x %s -domain_bc_y %s -scheme_type split -vesicle_shape "
       "none -fluid_viscosity %.17g -time_step %.17g",
-      (int)n, (int)(3 * n / 4), m->wall[0] ? "wall" : "periodic", m->wall[1] ? "wall" : "periodic", (double)m->nu,
-      (double)dt));
-  PetscCall(TestRunCreate(options, f));
-  g = f->fluid->grid;
-  PetscCall(VecDuplicate(f->scheme->state.w, &f->fluid->bc1)); /* the fluid destroys it */
+      (int)n, (int)(3 * n / 4), m->wall[0] ? "wall" : "periodic", m->wall[1] ? "wall" : "periodic", m->nu, dt);
+  const Grid g = f->fluid->grid;
+  TestCall(VecDuplicate(f->scheme->state.w, &f->fluid->bc1)); /* the fluid destroys it */
   m->forcing = PETSC_FALSE;
-  PetscCall(Fill(g, ManufacturedField, 0, m, PETSC_FALSE, f->scheme->state.w));
-  PetscCall(Fill(g, ManufacturedField, 0, m, PETSC_TRUE, f->scheme->state.p));
+  Fill(g, ManufacturedField, 0, m, PETSC_FALSE, f->scheme->state.w);
+  Fill(g, ManufacturedField, 0, m, PETSC_TRUE, f->scheme->state.p);
   m->forcing = PETSC_TRUE;
-  *div = 0;
   for (PetscInt k = 1; k <= steps; k++) {
-    PetscCall(Fill(g, ManufacturedField, k * dt, m, PETSC_FALSE, f->fluid->bc1));
-    PetscCall(SchemeStep(f->scheme, PETSC_MAX_REAL));
-    *div = PetscMax(*div, f->scheme->report.div_max);
+    Fill(g, ManufacturedField, k * dt, m, PETSC_FALSE, f->fluid->bc1);
+    TestCall(SchemeStep(f->scheme, PETSC_MAX_REAL));
+    div = PetscMax(div, f->scheme->report.div_max);
   }
   m->forcing = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return div;
 }
 
 /* dt = 0.8 h^2, so that both errors fall with h^2. */
-static PetscErrorCode CheckSpaceOrder(const char name[], Manufactured *m) {
-  PetscReal error[3][2], div;
-  PetscFunctionBeginUser;
+static void CheckSpaceOrder(const char name[], Manufactured *m) {
+  PetscReal error[3][2];
   for (int level = 0; level < 3; level++) {
     const PetscInt n = 16 << level;
     TestWorld f;
     Vec w, p;
-    PetscCall(RunManufactured(n, n * n / 4, m, &f, &div));
-    PetscCall(TestVecs(f.scheme->state.w, &w, NULL));
-    PetscCall(TestVecs(f.scheme->state.p, &p, NULL));
-    PetscCall(Fill(f.fluid->grid, ManufacturedField, 0.2, m, PETSC_FALSE, w));
-    PetscCall(Fill(f.fluid->grid, ManufacturedField, 0.2, m, PETSC_TRUE, p));
-    PetscCall(Distance(f.fluid->grid, f.scheme->state.w, w, PETSC_FALSE, &error[level][0]));
-    PetscCall(Distance(f.fluid->grid, f.scheme->state.p, p, PETSC_TRUE, &error[level][1]));
+    const PetscReal div = RunManufactured(n, n * n / 4, m, &f);
+    TestVecs(f.scheme->state.w, &w, NULL);
+    TestVecs(f.scheme->state.p, &p, NULL);
+    Fill(f.fluid->grid, ManufacturedField, 0.2, m, PETSC_FALSE, w);
+    Fill(f.fluid->grid, ManufacturedField, 0.2, m, PETSC_TRUE, p);
+    error[level][0] = Distance(f.fluid->grid, f.scheme->state.w, w, PETSC_FALSE);
+    error[level][1] = Distance(f.fluid->grid, f.scheme->state.p, p, PETSC_TRUE);
     CHECK(div < 1e-11, "%s, %d cells: max |div u| %.1e", name, (int)n, div);
-    PetscCall(TestWorldDestroy(&f));
+    TestWorldDestroy(&f);
   }
   for (int level = 1; level < 3; level++)
     for (int k = 0; k < 2; k++) {
@@ -169,23 +153,20 @@ static PetscErrorCode CheckSpaceOrder(const char name[], Manufactured *m) {
       CHECK(order > (k ? 1.5 : 1.8), "%s: %s of order %.2f in h, error %.2e", name, k ? "pressure" : "velocity", order,
             error[level][k]);
     }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* On one grid, against a small step. */
-static PetscErrorCode CheckTimeOrder(const char name[], Manufactured *m) {
+static void CheckTimeOrder(const char name[], Manufactured *m) {
   TestWorld fine;
-  PetscReal last[2] = {0, 0}, div;
-  PetscFunctionBeginUser;
-  PetscCall(RunManufactured(32, 1280, m, &fine, &div));
+  PetscReal last[2] = {0, 0};
+  (void)RunManufactured(32, 1280, m, &fine);
   for (int level = 0; level < 3; level++) {
     const PetscInt steps = 20 << level;
     TestWorld f;
-    PetscReal error[2];
-    PetscCall(RunManufactured(32, steps, m, &f, &div));
-    PetscCall(Distance(f.fluid->grid, f.scheme->state.w, fine.scheme->state.w, PETSC_FALSE, &error[0]));
-    PetscCall(Distance(f.fluid->grid, f.scheme->state.p, fine.scheme->state.p, PETSC_TRUE, &error[1]));
-    PetscCall(TestWorldDestroy(&f));
+    (void)RunManufactured(32, steps, m, &f);
+    const PetscReal error[2] = {Distance(f.fluid->grid, f.scheme->state.w, fine.scheme->state.w, PETSC_FALSE),
+                                Distance(f.fluid->grid, f.scheme->state.p, fine.scheme->state.p, PETSC_TRUE)};
+    TestWorldDestroy(&f);
     for (int k = 0; k < 2; k++) {
       const PetscReal order = level ? PetscLog2Real(last[k] / error[k]) : 1;
       last[k] = error[k];
@@ -193,20 +174,16 @@ static PetscErrorCode CheckTimeOrder(const char name[], Manufactured *m) {
             k ? "pressure" : "velocity", order, error[k]);
     }
   }
-  PetscCall(TestWorldDestroy(&fine));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&fine);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   Manufactured walls = {{PETSC_TRUE, PETSC_TRUE}, 0.3, PETSC_FALSE};
   Manufactured channel = {{PETSC_FALSE, PETSC_TRUE}, 0.3, PETSC_FALSE};
-  PetscFunctionBeginUser;
-  PetscCall(CheckDecay("shear mode in a channel", "-domain_bc_x periodic", ShearMode, PETSC_PI, 1));
-  PetscCall(
-      CheckDecay("vortex in a periodic box", "-domain_bc_x periodic -domain_bc_y periodic", Vortex, 2 * PETSC_PI, 2));
-  PetscCall(CheckSpaceOrder("four walls", &walls));
-  PetscCall(CheckSpaceOrder("channel along x", &channel));
-  PetscCall(CheckTimeOrder("four walls", &walls));
-  PetscCall(CheckTimeOrder("channel along x", &channel));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckDecay("shear mode in a channel", "-domain_bc_x periodic", ShearMode, PETSC_PI, 1);
+  CheckDecay("vortex in a periodic box", "-domain_bc_x periodic -domain_bc_y periodic", Vortex, 2 * PETSC_PI, 2);
+  CheckSpaceOrder("four walls", &walls);
+  CheckSpaceOrder("channel along x", &channel);
+  CheckTimeOrder("four walls", &walls);
+  CheckTimeOrder("channel along x", &channel);
 }

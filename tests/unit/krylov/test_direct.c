@@ -12,47 +12,41 @@ static PetscReal largest[VECTORS];
 static PetscInt solves, iterations;
 static Simulation run;
 
-static PetscErrorCode Compare(Vec x, Vec y, PetscReal *error) {
+static void Compare(Vec x, Vec y, PetscReal *error) {
   PetscReal size, off;
-  PetscFunctionBeginUser;
-  PetscCall(VecNorm(y, NORM_INFINITY, &size));
-  PetscCall(VecAXPY(x, -1, y));
-  PetscCall(VecNorm(x, NORM_INFINITY, &off));
+  TestCall(VecNorm(y, NORM_INFINITY, &size));
+  TestCall(VecAXPY(x, -1, y));
+  TestCall(VecNorm(x, NORM_INFINITY, &off));
   *error = off == off ? PetscMax(*error, off / (1 + size)) : PETSC_INFINITY;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A problem with vectors of its own, the states before it in its forcing f and in k; w is used. */
-static PetscErrorCode Duplicate(Coupling c, const CoupledProblem *q, Forcing *f, Vec w, CoupledProblem *own) {
+static void Duplicate(Coupling c, const CoupledProblem *q, Forcing *f, Vec w, CoupledProblem *own) {
   const StreamPast *past = q->known.past;
-  PetscFunctionBeginUser;
   *own = (CoupledProblem){.known = q->known, .g = q->g};
   own->known.f = f;
-  PetscCall(VecDuplicate(q->k, &own->k));
-  PetscCall(VecDuplicate(q->sigma, &own->sigma));
-  PetscCall(VecDuplicate(q->V, &own->V));
-  if (q->solid) PetscCall(VecDuplicate(q->solid, &own->solid));
-  PetscCall(VecCopy(q->k, own->k));
+  TestCall(VecDuplicate(q->k, &own->k));
+  TestCall(VecDuplicate(q->sigma, &own->sigma));
+  TestCall(VecDuplicate(q->V, &own->V));
+  if (q->solid) TestCall(VecDuplicate(q->solid, &own->solid));
+  TestCall(VecCopy(q->k, own->k));
   for (PetscInt j = 0; past && j < past->count; j++) {
-    PetscCall(StreamFlowsVelocity(c->mobility->stream->flows, past->flow[j], w));
-    PetscCall(VecScale(w, past->weight[j]));
-    PetscCall(ForcingAdd(f, w));
+    TestCall(StreamFlowsVelocity(c->mobility->stream->flows, past->flow[j], w));
+    TestCall(VecScale(w, past->weight[j]));
+    TestCall(ForcingAdd(f, w));
   }
-  PetscCall(MarkersInterpolate(c->markers, f->values, c->velocity)); /* of which markers have the lag */
-  if (past) PetscCall(VecAXPY(own->k, past->lag, c->velocity));
-  PetscCall(ForcingAdd(f, q->known.f->values));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(MarkersInterpolate(c->markers, f->values, c->velocity)); /* of which markers have the lag */
+  if (past) TestCall(VecAXPY(own->k, past->lag, c->velocity));
+  TestCall(ForcingAdd(f, q->known.f->values));
 }
 
 /* The solver's u and p on the grid. */
-static PetscErrorCode Fields(Mobility m, const MobilityKnown *known, Vec w, Vec p) {
-  PetscFunctionBeginUser;
+static void Fields(Mobility m, const MobilityKnown *known, Vec w, Vec p) {
   if (known->past) {
-    PetscCall(StreamFlowsVelocity(m->stream->flows, known->past->made, w));
-    PetscCall(MobilityPressure(m, known->f, w, p));
+    TestCall(StreamFlowsVelocity(m->stream->flows, known->past->made, w));
+    TestCall(MobilityPressure(m, known->f, w, p));
   } else
-    PetscCall(MobilityFields(m, known->f, w, p));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    TestCall(MobilityFields(m, known->f, w, p));
 }
 
 /* In the place of the library's, which it calls: the dynamic linker finds this one first. */
@@ -69,17 +63,17 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
     PetscCall(VecDuplicate(f.values, &w[k]));
     PetscCall(DMCreateGlobalVector(c->fluid->grid->da[FIELD_P], &p[k]));
   }
-  PetscCall(Duplicate(c, q, &f, w[0], &own));
-  PetscCall(DirectSolve(c, &own, w[0], p[0]));
+  Duplicate(c, q, &f, w[0], &own);
+  DirectSolve(c, &own, w[0], p[0]);
   PetscCall(solve(s, q, report));
   solves++;
   iterations += report->its;
-  PetscCall(Fields(c->mobility, &q->known, w[1], p[1]));
-  PetscCall(Compare(w[0], w[1], &largest[W]));
-  PetscCall(Compare(p[0], p[1], &largest[P]));
-  PetscCall(Compare(own.sigma, q->sigma, &largest[SIGMA]));
-  PetscCall(Compare(own.V, q->V, &largest[V]));
-  if (q->solid) PetscCall(Compare(own.solid, q->solid, &largest[SOLID]));
+  Fields(c->mobility, &q->known, w[1], p[1]);
+  Compare(w[0], w[1], &largest[W]);
+  Compare(p[0], p[1], &largest[P]);
+  Compare(own.sigma, q->sigma, &largest[SIGMA]);
+  Compare(own.V, q->V, &largest[V]);
+  if (q->solid) Compare(own.solid, q->solid, &largest[SOLID]);
   Vec *all[] = {&own.k, &own.sigma, &own.V, &own.solid, &w[0], &w[1], &p[0], &p[1]};
   for (int k = 0; k < 8; k++) PetscCall(VecDestroy(all[k]));
   PetscCall(ForcingDestroy(&f));
@@ -107,9 +101,9 @@ PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
   PetscCall(VecDuplicate(u, &w));
   PetscCall(VecDuplicate(p, &q));
   own.known.f = &copy;
-  PetscCall(DirectSolve(c, &own, w, q));
-  PetscCall(Compare(w, u, &largest[W]));
-  PetscCall(Compare(q, p, &largest[P]));
+  DirectSolve(c, &own, w, q);
+  Compare(w, u, &largest[W]);
+  Compare(q, p, &largest[P]);
   solves++;
   Vec *all[] = {&own.k, &own.V, &own.known.G, &own.g, &own.sigma, &w, &q};
   for (int k = 0; k < 7; k++) PetscCall(VecDestroy(all[k]));
@@ -118,28 +112,26 @@ PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
 }
 
 /* A scene's run, all of whose solves agree to `within`. */
-static PetscErrorCode Agrees(const char name[], PetscReal within, const char options[]) {
+static void Agrees(const char name[], PetscReal within, const char options[]) {
   static const char *const what[VECTORS] = {"velocity", "pressure", "tension", "markers' velocity", "obstacles' force"};
   const char *scratch = getenv("PETVES_SCRATCH");
   char folder[PETSC_MAX_PATH_LEN];
   PetscBool good;
-  PetscFunctionBeginUser;
   solves = iterations = 0;
-  PetscCall(PetscArrayzero(largest, VECTORS));
-  PetscCall(PetscSNPrintf(folder, sizeof(folder), "%sdirect", scratch ? scratch : "/tmp/"));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscOptionsInsertString(NULL, "-output_overwrite -allow_unused_options -vesicle_allow_close_markers "
-                                           "-coupled_ksp_rtol 1e-12 -checkpoint_every 0"));
-  PetscCall(PetscOptionsInsertString(NULL, options));
-  PetscCall(PetscOptionsSetValue(NULL, "-output_dir", folder));
-  PetscCall(SimulationCreate(PETSC_COMM_WORLD, &run));
-  PetscCall(PetvesSetQuiet(PETSC_TRUE));
-  PetscCall(SimulationRun(run, &good));
-  PetscCall(SimulationDestroy(&run));
+  TestCall(PetscArrayzero(largest, VECTORS));
+  TestCall(PetscSNPrintf(folder, sizeof(folder), "%sdirect", scratch ? scratch : "/tmp/"));
+  TestCall(PetscOptionsClear(NULL));
+  TestCall(PetscOptionsInsertString(NULL, "-output_overwrite -allow_unused_options -vesicle_allow_close_markers "
+                                          "-coupled_ksp_rtol 1e-12 -checkpoint_every 0"));
+  TestCall(PetscOptionsInsertString(NULL, options));
+  TestCall(PetscOptionsSetValue(NULL, "-output_dir", folder));
+  TestCall(SimulationCreate(PETSC_COMM_WORLD, &run));
+  TestCall(PetvesSetQuiet(PETSC_TRUE));
+  TestCall(SimulationRun(run, &good));
+  TestCall(SimulationDestroy(&run));
   CHECK(good && solves > 0, "%s: %d solves in %d iterations", name, (int)solves, (int)iterations);
   for (int k = 0; k < VECTORS; k++)
     CHECK(largest[k] <= within, "%s: %s as of the sparse LU, %.1e", name, what[k], largest[k]);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define STEPS " -time_step 0.02 -time_end 0.06"
@@ -151,23 +143,21 @@ static PetscErrorCode Agrees(const char name[], PetscReal within, const char opt
   "unsteady"
 
 /* The paper's membrane, of both orders, with and without bending, in every kind of box. */
-static PetscErrorCode PaperScenes(void) {
+static void PaperScenes(void) {
   static const char *const box[] = {" -domain_cells 32,32",
                                     " -domain_cells 40,32 -domain_box 0,2.5,-1,1 -vesicle_center 2.4,0.1" CHANNEL,
                                     " -domain_cells 32,32 -vesicle_center 0,0.9" PERIODIC};
   static const char *const flow[] = {" -vesicle_angle 20", SHEAR};
-  PetscFunctionBeginUser;
   for (int k = 0; k < 12; k++) {
     char name[64], options[512];
     const int order = 1 + k % 2;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "box %d, %s, order %d", k / 4, k / 2 % 2 ? "shear" : "at rest", order));
-    PetscCall(PetscSNPrintf(options, sizeof(options), "%s%s -scheme_order %d" PAPER STEPS, box[k / 4], flow[k / 2 % 2],
-                            order));
-    PetscCall(Agrees(name, 1e-9, options));
-    PetscCall(PetscStrlcat(options, " -vesicle_bending 0", sizeof(options)));
-    if (k / 2 % 2) PetscCall(Agrees(name, 1e-9, options));
+    TestCall(PetscSNPrintf(name, sizeof(name), "box %d, %s, order %d", k / 4, k / 2 % 2 ? "shear" : "at rest", order));
+    TestCall(PetscSNPrintf(options, sizeof(options), "%s%s -scheme_order %d" PAPER STEPS, box[k / 4], flow[k / 2 % 2],
+                           order));
+    Agrees(name, 1e-9, options);
+    TestCall(PetscStrlcat(options, " -vesicle_bending 0", sizeof(options)));
+    if (k / 2 % 2) Agrees(name, 1e-9, options);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define PAIR                                                                                                           \
@@ -239,30 +229,26 @@ static const struct {
 };
 
 /* A bump on a wall, with its foot half a cell from a corner of four walls. */
-static PetscErrorCode BumpBesideCorner(void) {
+static void BumpBesideCorner(void) {
   const char *scratch = getenv("PETVES_SCRATCH");
   char path[PETSC_MAX_PATH_LEN], options[2 * PETSC_MAX_PATH_LEN];
   FILE *file;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%sbump.txt", scratch ? scratch : "/tmp/"));
-  PetscCall(PetscFOpen(PETSC_COMM_SELF, path, "w", &file));
+  TestCall(PetscSNPrintf(path, sizeof(path), "%sbump.txt", scratch ? scratch : "/tmp/"));
+  TestCall(PetscFOpen(PETSC_COMM_SELF, path, "w", &file));
   fprintf(file, "# open\n");
   for (int k = -40; k <= 40; k++)
     fprintf(file, "%.17g %.17g\n", 0.28 + k / 160., 0.15 * (1 + PetscCosReal(PETSC_PI * k / 40)));
-  PetscCall(PetscFClose(PETSC_COMM_SELF, file));
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          "-vesicle_shape none -time_step .01 -time_end .01 -domain_box 0,1,0,1 -domain_cells 16,16 "
-                          "-flow_type shear -obstacle_shape file -obstacle_file %s",
-                          path));
-  PetscCall(Agrees("bump beside a corner", 1e-7, options));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFClose(PETSC_COMM_SELF, file));
+  TestCall(PetscSNPrintf(options, sizeof(options),
+                         "-vesicle_shape none -time_step .01 -time_end .01 -domain_box 0,1,0,1 -domain_cells 16,16 "
+                         "-flow_type shear -obstacle_shape file -obstacle_file %s",
+                         path));
+  Agrees("bump beside a corner", 1e-7, options);
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
-  PetscCall(PaperScenes());
+void Facts(void) {
+  PaperScenes();
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scenes); k++)
-    PetscCall(Agrees(scenes[k].name, scenes[k].within, scenes[k].options));
-  PetscCall(BumpBesideCorner());
-  PetscFunctionReturn(PETSC_SUCCESS);
+    Agrees(scenes[k].name, scenes[k].within, scenes[k].options);
+  BumpBesideCorner();
 }

@@ -35,15 +35,14 @@ static void Place(const Case *a, PetscInt k, PaddedStencil response[2], PaddedSt
 }
 
 /* Every pair of the ellipse's markers, each marker with itself too. */
-static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
+static void Compare(const OffsetTable lattice[2], const Case *a) {
   const PetscReal scale = 2.5;
   PaddedStencil response[2 * MARKERS], dipole[MARKERS][DIPOLE_COUNT];
   PetscReal answer[4][MARKERS], *const free[4] = {answer[0], answer[1], answer[2], answer[3]}, worst = 0, most = 0,
                                        X[2];
   DipoleFaces faces;
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < MARKERS; k++) Place(a, k, &response[2 * k], dipole[k], X);
-  PetscCall(DipoleFacesCreate(MARKERS, response, &faces));
+  TestCall(DipoleFacesCreate(MARKERS, response, &faces));
   for (PetscInt j = 0; j < MARKERS; j++) {
     DipoleFacesAnswer(&faces, lattice, dipole[j], a->cells, a->N, scale, free);
     for (PetscInt i = 0; i < MARKERS; i++) {
@@ -62,13 +61,12 @@ static PetscErrorCode Compare(const OffsetTable lattice[2], const Case *a) {
   CHECK(
       most > 0.01 && worst < 1e-14,
       "a dipole's field read by markers of an ellipse %g x %g is the pairs' sums, %+d, %+d cells off: to %.0e of %.2f",
-      (double)a->half[0], (double)a->half[1], (int)a->cells[0], (int)a->cells[1], (double)worst, (double)most);
-  PetscCall(DipoleFacesDestroy(&faces));
-  PetscFunctionReturn(PETSC_SUCCESS);
+      a->half[0], a->half[1], (int)a->cells[0], (int)a->cells[1], worst, most);
+  TestCall(DipoleFacesDestroy(&faces));
 }
 
 /* Pairs of markers across an ellipse, 0.78 to 1.18 times this apart (cells), by both. */
-static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diameter, PetscReal bound) {
+static void CompareFar(const OffsetTable lattice[2], PetscReal diameter, PetscReal bound) {
   const Case a = {.half = {0.5 * diameter, 0.5 * diameter}};
   PaddedStencil response[2 * MARKERS], dipole[DIPOLE_COUNT * MARKERS];
   PetscReal X[2 * MARKERS], worst = 0, most = 0;
@@ -77,7 +75,6 @@ static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diamete
   const LayerSetting set = {.markers = &markers, .nu = 1, .unit = 1};
   struct _p_LayerPairs pairs = {
       .kernel = &stresslet, .set = &set, .lattice = lattice, .from.stencil = dipole, .stencil = response};
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < MARKERS; k++) Place(&a, k, response + 2 * k, dipole + DIPOLE_COUNT * k, X + 2 * k);
   for (PetscInt j = 0; j < MARKERS; j++)
     for (int half = 0; half < 2; half++) {
@@ -91,31 +88,28 @@ static PetscErrorCode CompareFar(const OffsetTable lattice[2], PetscReal diamete
         most = PetscMax(most, PetscAbsReal(sum[k]));
       }
     }
-  CHECK(worst < bound * most, "pairs about %g cells apart have the closed form: to %.1e of the largest",
-        (double)diameter, (double)(worst / most));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CHECK(worst < bound * most, "pairs about %g cells apart have the closed form: to %.1e of the largest", diameter,
+        (worst / most));
 }
 
 #define COLUMNS 16
 #define ROWS 32
 
 /* The rows of two dipoles at these heights, into `rows`. */
-static PetscErrorCode SetRows(Grid g, const PetscReal height[2], PetscBool own, DipoleRows rows) {
+static void SetRows(Grid g, const PetscReal height[2], PetscBool own, DipoleRows rows) {
   const PetscReal T[2 * DIPOLE_COUNT] = {0.7, -0.4, 0.3, -0.2, 0.9, 0.5}, none[2] = {0, 0};
   Stencil spot[2 * DIPOLE_SPOTS];
   StencilRows list;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(spot, 2 * DIPOLE_SPOTS));
-  PetscCall(DipoleListCreate(g, &list));
+  TestCall(PetscArrayzero(spot, 2 * DIPOLE_SPOTS));
+  TestCall(DipoleListCreate(g, &list));
   for (int k = 0; k < 2; k++) DipoleSpots(g, 1, (PetscReal[]){6.3 + 2 * k, height[k]}, spot + k * DIPOLE_SPOTS);
-  PetscCall(StencilRowsPlace(list, 2, spot));
-  PetscCall(DipoleRowsSet(rows, list, T, own, NULL, none));
-  PetscCall(StencilRowsDestroy(&list));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(StencilRowsPlace(list, 2, spot));
+  TestCall(DipoleRowsSet(rows, list, T, own, NULL, none));
+  TestCall(StencilRowsDestroy(&list));
 }
 
 /* Dipoles that have moved: force and velocity of all rows are those of rows that had none before. */
-static PetscErrorCode CompareRows(const PetscReal before[2], const PetscReal now[2]) {
+static void CompareRows(const PetscReal before[2], const PetscReal now[2]) {
   struct _p_Grid grid = {.h = 1,
                          .n = {COLUMNS, ROWS},
                          .wall = {PETSC_FALSE, PETSC_TRUE},
@@ -124,11 +118,10 @@ static PetscErrorCode CompareRows(const PetscReal before[2], const PetscReal now
                          .size = 1};
   PetscReal worst = 0, most = 0;
   DipoleRows rows[2];
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) PetscCall(DipoleRowsCreate(&grid, 1, &rows[k]));
-  PetscCall(SetRows(&grid, before, PETSC_TRUE, rows[0]));
-  PetscCall(SetRows(&grid, (PetscReal[]){before[0] + 2, before[1] - 1}, PETSC_FALSE, rows[0]));
-  for (int k = 0; k < 2; k++) PetscCall(SetRows(&grid, now, PETSC_TRUE, rows[k]));
+  for (int k = 0; k < 2; k++) TestCall(DipoleRowsCreate(&grid, 1, &rows[k]));
+  SetRows(&grid, before, PETSC_TRUE, rows[0]);
+  SetRows(&grid, (PetscReal[]){before[0] + 2, before[1] - 1}, PETSC_FALSE, rows[0]);
+  for (int k = 0; k < 2; k++) SetRows(&grid, now, PETSC_TRUE, rows[k]);
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = 0; j < grid.rows[f]; j++) {
       PetscScalar row[2][2 * COLUMNS] = {{0}};
@@ -142,28 +135,25 @@ static PetscErrorCode CompareRows(const PetscReal before[2], const PetscReal now
       }
     }
   CHECK(worst == 0 && most > 0.1, "dipoles moved from rows %g and %g to %g and %g leave nothing behind: %.1e of %.2f",
-        (double)before[0], (double)before[1], (double)now[0], (double)now[1], (double)worst, (double)most);
-  for (int k = 0; k < 2; k++) PetscCall(DipoleRowsDestroy(&rows[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+        before[0], before[1], now[0], now[1], worst, most);
+  for (int k = 0; k < 2; k++) TestCall(DipoleRowsDestroy(&rows[k]));
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   const PetscReal height[4][2] = {{6.4, 25.1}, {12.2, 17.6}, {15.3, 15.8}, {9.7, 28.9}};
   const PetscReal half[4][2] = {{5, 3}, {0.2, 0.3}, {1, 6}, {7, 0.6}};
   const PetscInt cells[3][2] = {{0, 0}, {4, -3}, {-1, 5}};
   const PetscReal N[2][2] = {{0.3, -0.8}, {-1, 0}};
   OffsetTable lattice[2];
-  PetscFunctionBeginUser;
-  PetscCall(LatticeDipoles(24 + OFFSET_LAGS, lattice));
+  TestCall(LatticeDipoles(24 + OFFSET_LAGS, lattice));
   for (int q = 0; q < 24; q++) {
     const Case a = {.half = {half[q / 6][0], half[q / 6][1]},
                     .cells = {cells[q / 2 % 3][0], cells[q / 2 % 3][1]},
                     .N = {N[q % 2][0], N[q % 2][1]}};
-    PetscCall(Compare(lattice, &a));
+    Compare(lattice, &a);
   }
-  PetscCall(CompareFar(lattice, 16, 6e-5));
-  PetscCall(CompareFar(lattice, 24, 1e-5));
-  for (int c = 0; c < 2; c++) PetscCall(OffsetTableDestroy(&lattice[c]));
-  for (int k = 0; k < 4; k++) PetscCall(CompareRows(height[k], height[(k + 1) % 4]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CompareFar(lattice, 16, 6e-5);
+  CompareFar(lattice, 24, 1e-5);
+  for (int c = 0; c < 2; c++) TestCall(OffsetTableDestroy(&lattice[c]));
+  for (int k = 0; k < 4; k++) CompareRows(height[k], height[(k + 1) % 4]);
 }

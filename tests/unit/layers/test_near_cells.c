@@ -15,9 +15,8 @@ static PetscReal Entry(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt
 }
 
 /* Its Laplacian is the divergence of the force, and far away it is x/(2 pi r^2). */
-static PetscErrorCode CheckTable(const OffsetTable *t) {
+static void CheckTable(const OffsetTable *t) {
   PetscReal worst = 0, far = 0;
-  PetscFunctionBeginUser;
   for (PetscInt j = -19; j <= 19; j++)
     for (PetscInt i = -19; i <= 19; i++) {
       const PetscReal laplacian = Entry(t, OFFSET_UU, i + 1, j) + Entry(t, OFFSET_UU, i - 1, j) +
@@ -32,49 +31,44 @@ static PetscErrorCode CheckTable(const OffsetTable *t) {
     }
   CHECK(worst < 1e-13, "the pressure's Laplacian is the force's divergence: off by %.1e", worst);
   CHECK(far < 0.1, "far away it is x/(2 pi r^2), but for %.3f/r^3", far);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Against the library's, over many powers of two and next to 1. */
-static PetscErrorCode CheckLogarithm(void) {
+static void CheckLogarithm(void) {
   PetscReal worst = 0;
-  PetscFunctionBeginUser;
   for (int k = 0; k < 4000; k++) {
     const PetscReal wide = PetscPowReal(10, -300 + 0.1503 * k), x = k % 2 ? wide : 1 + (k - 2000) * 1e-4;
     const PetscReal exact = PetscLogReal(x), found = LanesLog((Lanes){x, 1, x, x})[2];
     worst = PetscMax(worst, PetscAbsReal(found - exact) / PetscMax(PetscAbsReal(exact), 1e-3));
   }
   CHECK(worst < 1e-15, "logarithms of four numbers at once: off by %.1e of themselves", worst);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Against the grid's Stokes solve for two opposite forces, of u and of v, in a large periodic box, near the first ones.
  */
-static PetscErrorCode CheckAgainstGrid(const OffsetTable *t) {
+static void CheckAgainstGrid(const OffsetTable *t) {
   const PetscInt at[2] = {64, 64}, apart = 64;
   PetscReal worst = 0;
   PetscScalar *a;
   TestWorld w;
   Stokes stokes;
   Vec f, u, p;
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(EXACT PERIODIC "-vesicle_shape none -scheme_type coupled -scheme_order 2 -delta_type cbs54 "
-                                           "-domain_box 0,256,0,256 -domain_cells 256,256 -fluid_inertia none",
-                            &w));
+  TestWorldCreate(&w, EXACT PERIODIC "-vesicle_shape none -scheme_type coupled -scheme_order 2 -delta_type cbs54 "
+                                     "-domain_box 0,256,0,256 -domain_cells 256,256 -fluid_inertia none");
   const Grid g = w.fluid->grid;
-  PetscCall(StokesCreate(w.fluid, &stokes));
-  PetscCall(TestFieldVecs(g->velocity, &f, &u, NULL));
-  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
-  PetscCall(VecGetArray(f, &a));
+  TestCall(StokesCreate(w.fluid, &stokes));
+  TestFieldVecs(g->velocity, &f, &u, NULL);
+  TestFieldVecs(g->da[FIELD_P], &p, NULL);
+  TestCall(VecGetArray(f, &a));
   for (int k = 0; k < 2; k++) {
     const PetscInt row = at[1] + k * 2 * apart - g->first, column = at[0] + k * 2 * apart;
     if (row < 0 || row >= g->rows[FIELD_P]) continue;
     a[row * g->n[0] + column] = k ? -1 : 1;
     a[GridLocalU(g) + row * g->n[0] + column] = k ? -2 : 2;
   }
-  PetscCall(VecRestoreArray(f, &a));
-  PetscCall(StokesSolve(stokes, f, NULL, u, p));
-  PetscCall(VecGetArray(p, &a));
+  TestCall(VecRestoreArray(f, &a));
+  TestCall(StokesSolve(stokes, f, NULL, u, p));
+  TestCall(VecGetArray(p, &a));
   for (PetscInt j = -6; j <= 6; j++)
     for (PetscInt i = -6; i <= 6; i++) {
       const PetscInt row = at[1] + j - g->first;
@@ -82,17 +76,15 @@ static PetscErrorCode CheckAgainstGrid(const OffsetTable *t) {
       worst = PetscMax(worst, PetscAbsReal(a[row * g->n[0] + at[0] + i] - Entry(t, OFFSET_UU, i, j) -
                                            2 * Entry(t, OFFSET_VV, i, j)));
     }
-  PetscCall(VecRestoreArray(p, &a));
+  TestCall(VecRestoreArray(p, &a));
   CHECK(worst < 1e-5, "the Stokes solve's pressure next to a force, its images 256 h away: %.1e", worst);
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(StokesDestroy(&stokes));
+  TestWorldDestroy(&w);
 }
 
 /* Largest difference of the pressure from 1/RADIUS inside and from zero outside, its mean outside taken off. */
-static PetscErrorCode JumpError(Grid g, const PetscReal center[2], const PetscReal p[], PetscReal *error) {
+static void JumpError(Grid g, const PetscReal center[2], const PetscReal p[], PetscReal *error) {
   PetscReal sum[2] = {0, 0}, X[2];
-  PetscFunctionBeginUser;
   *error = 0;
   for (int round = 0; round < 2; round++) {
     for (PetscInt k = 0; k < g->n[0] * g->rows[FIELD_P]; k++) {
@@ -105,21 +97,18 @@ static PetscErrorCode JumpError(Grid g, const PetscReal center[2], const PetscRe
         sum[1]++;
       }
     }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, round ? 0 : 2, MPIU_REAL, MPI_SUM, g->comm));
+    TestCall(MPI_Allreduce(MPI_IN_PLACE, sum, round ? 0 : 2, MPIU_REAL, MPI_SUM, g->comm));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPI_MAX, g->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestMost(1, error);
 }
 
 /* u at cell centres of a periodic grid. */
-static PetscErrorCode FaceMeans(Grid g, Vec w, PetscReal u[]) {
+static void FaceMeans(Grid g, Vec w, PetscReal u[]) {
   const PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(w, &a));
+  TestCall(VecGetArrayRead(w, &a));
   for (PetscInt k = 0; k < g->n[0] * g->rows[FIELD_P]; k++)
     u[k] = 0.5 * (a[k] + a[k % g->n[0] ? k - 1 : k - 1 + g->n[0]]);
-  PetscCall(VecRestoreArrayRead(w, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArrayRead(w, &a));
 }
 
 static PetscReal Largest(PetscInt n, const PetscReal x[]) {
@@ -129,72 +118,67 @@ static PetscReal Largest(PetscInt n, const PetscReal x[]) {
 }
 
 /* The circle with tension 1, at the time coefficient a0 (0: any, quasi-steady). */
-static PetscErrorCode CheckCircle(const char options[], PetscReal a0) {
+static void CheckCircle(const char options[], PetscReal a0) {
   const PetscReal center[2] = {0.013, -0.021};
   PetscReal before, after, speed[2] = {0, 0}, *cells[2];
   const PetscScalar *a;
   TestWorld w;
   Stokes stokes;
   Vec f, u, p, sigma, F;
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(options, &w));
-  if (a0 > 0) PetscCall(TestWorldPlace(a0, &w));
+  TestWorldCreate(&w, "%s", options);
+  if (a0 > 0) TestWorldPlace(a0, &w);
   const Grid g = w.fluid->grid;
   const PetscInt n = g->n[0] * g->rows[FIELD_P];
-  PetscCall(StokesCreate(w.fluid, &stokes));
-  PetscCall(TestFieldVecs(g->velocity, &f, &u, NULL));
-  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
-  PetscCall(TestMarkerVecs(w.layout, 1, &sigma, NULL));
-  PetscCall(VecSet(sigma, 1));
-  PetscCall(CouplingSpreadTension(w.coupling, -1, sigma, f));
-  PetscCall(StokesSolve(stokes, f, NULL, u, p));
-  PetscCall(PetscCalloc2(n, &cells[0], n, &cells[1]));
-  PetscCall(VecGetArrayRead(p, &a));
-  PetscCall(JumpError(g, center, a, &before));
-  PetscCall(PetscArraycpy(cells[0], a, n));
-  PetscCall(VecRestoreArrayRead(p, &a));
-  PetscCall(FaceMeans(g, u, cells[1]));
+  TestCall(StokesCreate(w.fluid, &stokes));
+  TestFieldVecs(g->velocity, &f, &u, NULL);
+  TestFieldVecs(g->da[FIELD_P], &p, NULL);
+  TestMarkerVecs(w.layout, 1, &sigma, NULL);
+  TestCall(VecSet(sigma, 1));
+  TestCall(CouplingSpreadTension(w.coupling, -1, sigma, f));
+  TestCall(StokesSolve(stokes, f, NULL, u, p));
+  TestCall(PetscCalloc2(n, &cells[0], n, &cells[1]));
+  TestCall(VecGetArrayRead(p, &a));
+  JumpError(g, center, a, &before);
+  TestCall(PetscArraycpy(cells[0], a, n));
+  TestCall(VecRestoreArrayRead(p, &a));
+  FaceMeans(g, u, cells[1]);
   speed[0] = Largest(n, cells[1]);
-  PetscCall(VecDuplicate(w.X, &F));
-  PetscCall(CouplingForces(w.coupling, (Instant){0}, sigma, w.X, F));
-  PetscCall(SingleCellsCorrect(&w.coupling->mobility->near->set, &w.coupling->mobility->near->lattice, w.layout, F, w.X,
-                               (PetscReal *[]){cells[1], NULL, cells[0]}));
-  PetscCall(VecDestroy(&F));
-  PetscCall(JumpError(g, center, cells[0], &after));
+  TestCall(VecDuplicate(w.X, &F));
+  TestCall(CouplingForces(w.coupling, (Instant){0}, sigma, w.X, F));
+  TestCall(SingleCellsCorrect(&w.coupling->mobility->near->set, &w.coupling->mobility->near->lattice, w.layout, F, w.X,
+                              (PetscReal *[]){cells[1], NULL, cells[0]}));
+  TestCall(VecDestroy(&F));
+  JumpError(g, center, cells[0], &after);
   speed[1] = Largest(n, cells[1]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 2, MPIU_REAL, MPI_MAX, g->comm));
+  TestMost(2, speed);
   CHECK(before > 0.1 / RADIUS && after < 0.01 / RADIUS,
         "%s: pressure over a circle under tension, a0 = %g: off by %.2g of the jump, corrected by %.1e",
         w.scene->coupling.kernel, a0, before * RADIUS, after * RADIUS);
   CHECK(speed[1] < 3e-4, "where nothing moves: velocity %.1e of tension over viscosity, corrected %.1e", speed[0],
         speed[1]);
-  PetscCall(PetscFree2(cells[0], cells[1]));
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(cells[0], cells[1]));
+  TestCall(StokesDestroy(&stokes));
+  TestWorldDestroy(&w);
 }
 
 #define CIRCLE                                                                                                         \
   EXACT PERIODIC "-scheme_type coupled -scheme_order 2 -domain_box -1.5,1.5,-1.5,1.5 "                                 \
                  "-vesicle_semi_axes .5,.5 -vesicle_center .013,-.021 -vesicle_bending 0 "
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const kernels[] = {"cbs54", "ib6"};
   static const char *const grids[] = {"-domain_cells 32,32 -fluid_inertia none -vesicle_markers 35",
                                       "-domain_cells 64,64 -fluid_inertia none -vesicle_markers 45"};
   OffsetTable pressure;
-  PetscFunctionBeginUser;
-  PetscCall(LatticePressure(20, &pressure));
-  PetscCall(CheckLogarithm());
-  PetscCall(CheckTable(&pressure));
-  PetscCall(CheckAgainstGrid(&pressure));
-  PetscCall(OffsetTableDestroy(&pressure));
+  TestCall(LatticePressure(20, &pressure));
+  CheckLogarithm();
+  CheckTable(&pressure);
+  CheckAgainstGrid(&pressure);
+  TestCall(OffsetTableDestroy(&pressure));
   for (int k = 0; k < 4; k++) {
     char options[1024];
-    PetscCall(PetscSNPrintf(options, sizeof(options), "%s -delta_type %s %s", CIRCLE, kernels[k / 2], grids[k % 2]));
-    PetscCall(CheckCircle(options, 0));
+    TestCall(PetscSNPrintf(options, sizeof(options), "%s -delta_type %s %s", CIRCLE, kernels[k / 2], grids[k % 2]));
+    CheckCircle(options, 0);
   }
-  PetscCall(
-      CheckCircle(CIRCLE "-delta_type cbs54 -domain_cells 64,64 -fluid_inertia unsteady -vesicle_markers 45", 100));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckCircle(CIRCLE "-delta_type cbs54 -domain_cells 64,64 -fluid_inertia unsteady -vesicle_markers 45", 100);
 }

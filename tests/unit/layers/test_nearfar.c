@@ -47,22 +47,18 @@ static void BySums(const OffsetTable *t, const NearField f, PetscInt i, PetscInt
    stencils' sums; measured 0.0019 and 0.0026 h^4/(nu r^4) with cbs54 and ib6. And pairs closer by,
    which are such sums themselves, up to `near`: in single precision with many
    vesicles. */
-static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[], const char scene[], PetscReal near,
-                                      PetscReal bound) {
-  char options[512];
+static void CheckClosedForm(const OffsetTable *t, const char kernel[], const char scene[], PetscReal near,
+                            PetscReal bound) {
   TestWorld w;
   PetscReal worst[2] = {0, 0}, C[4];
   PetscInt pairs = 0;
-  PetscFunctionBeginUser;
-  PetscCall(
-      PetscSNPrintf(options, sizeof(options), EXACT PERIODIC "-scheme_type coupled -delta_type %s %s", kernel, scene));
-  PetscCall(TestWorldCreate(options, &w));
+  TestWorldCreate(&w, EXACT PERIODIC "-scheme_type coupled -delta_type %s %s", kernel, scene);
   const NearField f = w.coupling->mobility->near;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->kernel->reach[NEAR_TWO] + 2;
   const Layout l = w.layout;
   PetscReal *all;
-  PetscCall(PetscCalloc1(4 * l->M * l->M, &all));
-  PetscCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, l->M, all));
+  TestCall(PetscCalloc1(4 * l->M * l->M, &all));
+  TestCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, l->M, all));
   for (PetscInt i = l->first; i < l->first + l->n; i++)
     for (PetscInt j = 0; j < l->M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
@@ -75,34 +71,29 @@ static PetscErrorCode CheckClosedForm(const OffsetTable *t, const char kernel[],
       for (int c = 0; c < 4; c++)
         worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->set.nu * (is ? r * r * r * r : 1));
     }
-  PetscCall(PetscFree(all));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  TestCall(PetscFree(all));
+  TestMost(2, worst);
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < near && (worst[0] > 1e-13) == (near > 1e-12) && worst[1] < bound && pairs > 100,
         "%s, %d vesicles: closed form of %d pairs %g h apart within %.4f h^4/(nu r^4), bound %g; nearer ones to %.1e",
         kernel, (int)l->bodies, (int)pairs, ring, worst[1], bound, worst[0]);
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&w);
 }
 
 #define LARGE "-domain_cells 128,128 -domain_box 0,4,0,4 -vesicle_semi_axes 0.45,1.2 -vesicle_markers 111 "
 /* Pairs of one vesicle, 77 h long, beyond the reach of sums: the closed form of three orders with the place in the
    cells, and the vesicle's own quadrature; nearer ones are such sums. */
-static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], const char place[], PetscReal bound) {
-  char options[512];
+static void CheckWithin(const OffsetTable *t, const char kernel[], const char place[], PetscReal bound) {
   TestWorld w;
   PetscReal worst[2] = {0, 0}, C[4];
   PetscInt pairs = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options), EXACT PERIODIC "-scheme_type coupled -delta_type %s " LARGE "%s",
-                          kernel, place));
-  PetscCall(TestWorldCreate(options, &w));
+  TestWorldCreate(&w, EXACT PERIODIC "-scheme_type coupled -delta_type %s " LARGE "%s", kernel, place);
   const NearField f = w.coupling->mobility->near;
   const PetscInt M = w.layout->M;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
   PetscReal *all;
-  PetscCall(PetscCalloc1(4 * M * M, &all));
-  PetscCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, M, all));
+  TestCall(PetscCalloc1(4 * M * M, &all));
+  TestCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, M, all));
   for (PetscInt i = 0; i < M && w.layout->n; i++)
     for (PetscInt j = 0; j < M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]};
@@ -116,29 +107,26 @@ static PetscErrorCode CheckWithin(const OffsetTable *t, const char kernel[], con
         worst[is] = PetscMax(worst[is], PetscAbsReal(f->set.nu * (found[c] - C[c]) - own));
       }
     }
-  PetscCall(PetscFree(all));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  TestCall(PetscFree(all));
+  TestMost(2, worst);
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 4000,
         "%s, one vesicle, %s: closed form of %d pairs beyond %g h within %.2e/nu, bound %g; nearer ones to %.1e",
         kernel, place, (int)pairs, f->pairs->kernel->reach[NEAR_ONE], worst[1], bound, worst[0]);
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&w);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const kernels[] = {"cbs54", "ib6"};
   static const char *const places[] = {
       "-vesicle_center 2,2.1 -vesicle_angle 20", "-vesicle_center 1.99,1.98 -vesicle_angle 70",
       "-vesicle_center 2.01,1.91 -vesicle_angle 0", "-vesicle_center 2.05,2 -vesicle_angle -45"};
   OffsetTable table;
-  PetscFunctionBeginUser;
-  PetscCall(LatticeStokeslet(96, &table));
-  PetscCall(CheckClosedForm(&table, "cbs54", EIGHTEEN, 1e-9, 0.0035));
+  TestCall(LatticeStokeslet(96, &table));
+  CheckClosedForm(&table, "cbs54", EIGHTEEN, 1e-9, 0.0035);
   for (int k = 0; k < 2; k++) {
-    PetscCall(CheckClosedForm(&table, kernels[k], TWO, 1e-12, 0.0035));
-    for (int p = 0; p < 4; p++) PetscCall(CheckWithin(&table, kernels[k], places[p], 1.3e-7));
+    CheckClosedForm(&table, kernels[k], TWO, 1e-12, 0.0035);
+    for (int p = 0; p < 4; p++) CheckWithin(&table, kernels[k], places[p], 1.3e-7);
   }
-  PetscCall(OffsetTableDestroy(&table));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(OffsetTableDestroy(&table));
 }

@@ -46,9 +46,8 @@ static PetscReal RingError(const OffsetTable *t, PetscInt radius) {
 }
 
 /* Known values, no divergence, the Stokeslet far away with a remainder in h^2/r^2. */
-static PetscErrorCode CheckTable(const OffsetTable *t) {
+static void CheckTable(const OffsetTable *t) {
   PetscReal divergence = 0, ring[3];
-  PetscFunctionBeginUser;
   const PetscReal at0 = Entry(t, OFFSET_UU, 0, 0) - 0.168460448979795;
   const PetscReal at1 = Entry(t, OFFSET_UU, 1, 0) - 0.088882977433848;
   CHECK(PetscAbsReal(at0) < 1e-14 && PetscAbsReal(at1) < 1e-14, "uu(0,0) and uu(1,0): off by %.1e, %.1e", at0, at1);
@@ -61,24 +60,21 @@ static PetscErrorCode CheckTable(const OffsetTable *t) {
   for (int k = 0; k < 3; k++) ring[k] = RingError(t, 10 << k);
   CHECK(ring[0] < 0.05 && PetscAbsReal(ring[1] / ring[0] - 1) < 0.05 && PetscAbsReal(ring[2] / ring[1] - 1) < 0.02,
         "Stokeslet far away, apart by c/r^2: c = %.5f at r = 10, %.5f at 20, %.5f at 40", ring[0], ring[1], ring[2]);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define BOX_CELLS 256
 #define FROM 100 /* row and column of the force */
 
 /* The periodic grid's velocity w, entry (i, j) from the force, of every component, on every rank. */
-static PetscErrorCode Gather(Grid g, Vec w, PetscReal *all) {
+static void Gather(Grid g, Vec w, PetscReal *all) {
   const PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(all, 2 * BOX_CELLS * BOX_CELLS));
-  PetscCall(VecGetArrayRead(w, &a));
+  TestCall(PetscArrayzero(all, 2 * BOX_CELLS * BOX_CELLS));
+  TestCall(VecGetArrayRead(w, &a));
   for (int f = 0; f < 2; f++)
-    PetscCall(PetscArraycpy(all + (f * BOX_CELLS + g->first) * BOX_CELLS, a + (f ? GridLocalU(g) : 0),
-                            g->rows[f] * g->columns[f]));
-  PetscCall(VecRestoreArrayRead(w, &a));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2 * BOX_CELLS * BOX_CELLS, MPIU_REAL, MPI_SUM, g->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    TestCall(PetscArraycpy(all + (f * BOX_CELLS + g->first) * BOX_CELLS, a + (f ? GridLocalU(g) : 0),
+                           g->rows[f] * g->columns[f]));
+  TestCall(VecRestoreArrayRead(w, &a));
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, all, 2 * BOX_CELLS * BOX_CELLS, MPIU_REAL, MPI_SUM, g->comm));
 }
 
 /* Fourth difference along x (dir 0) or y, and second along both (dir 2), of a 5 x 5 patch about its middle. */
@@ -112,53 +108,48 @@ static void CompareGrid(const OffsetTable *t, const PetscReal *all, PetscReal wo
 
 /* The table is the response of a 256^2 periodic grid but for what the images add: a constant, quadratic terms of
    r^2/L^2 and quartic ones, of which fourth differences leave 1/L^4 = 2e-10. */
-static PetscErrorCode CheckPeriodicGrid(const OffsetTable *t) {
+static void CheckPeriodicGrid(const OffsetTable *t) {
   TestWorld w;
   Stokes stokes;
   Vec force, u, p;
   PetscScalar *a;
   PetscReal *all, worst[2];
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate("-domain_cells 256,256 -domain_box 0,256,0,256 -vesicle_shape none -fluid_viscosity 1 "
-                            "-scheme_type coupled " PERIODIC,
-                            &w));
+  TestWorldCreate(&w, "-domain_cells 256,256 -domain_box 0,256,0,256 -vesicle_shape none -fluid_viscosity 1 "
+                      "-scheme_type coupled " PERIODIC);
   const Grid g = w.fluid->grid;
-  PetscCall(StokesCreate(w.fluid, &stokes));
-  PetscCall(TestFieldVecs(g->velocity, &force, &u, NULL));
-  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
-  PetscCall(VecGetArray(force, &a));
+  TestCall(StokesCreate(w.fluid, &stokes));
+  TestFieldVecs(g->velocity, &force, &u, NULL);
+  TestFieldVecs(g->da[FIELD_P], &p, NULL);
+  TestCall(VecGetArray(force, &a));
   if (FROM >= g->first && FROM < g->first + g->rows[0]) a[(FROM - g->first) * BOX_CELLS + FROM] = 1;
-  PetscCall(VecRestoreArray(force, &a));
-  PetscCall(FluidRemoveMean(w.fluid, force));
-  PetscCall(StokesSolve(stokes, force, NULL, u, p));
-  PetscCall(PetscMalloc1(2 * BOX_CELLS * BOX_CELLS, &all));
-  PetscCall(Gather(g, u, all));
+  TestCall(VecRestoreArray(force, &a));
+  TestCall(FluidRemoveMean(w.fluid, force));
+  TestCall(StokesSolve(stokes, force, NULL, u, p));
+  TestCall(PetscMalloc1(2 * BOX_CELLS * BOX_CELLS, &all));
+  Gather(g, u, all);
   CompareGrid(t, all, worst);
   CHECK(worst[0] < 1e-4 && worst[1] < 1e-8,
         "a 256^2 periodic grid's response: from one entry to the next apart by %.1e, fourth differences by %.1e",
         worst[0], worst[1]);
-  PetscCall(PetscFree(all));
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(all));
+  TestCall(StokesDestroy(&stokes));
+  TestWorldDestroy(&w);
 }
 
 /* The whole of C, [2M][2M] by columns, on every rank. */
-static PetscErrorCode WholeMatrix(TestWorld *w, PetscReal *C) {
+static void WholeMatrix(TestWorld *w, PetscReal *C) {
   const Layout l = w->layout;
   const PetscInt N = 2 * l->M;
   PetscScalar *F, *U;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * l->n, &F, 2 * l->n, &U));
+  TestCall(PetscMalloc2(2 * l->n, &F, 2 * l->n, &U));
   for (PetscInt j = 0; j < N; j++) {
-    PetscCall(PetscArrayzero(F, 2 * l->n));
-    PetscCall(PetscArrayzero(U, 2 * l->n));
+    TestCall(PetscArrayzero(F, 2 * l->n));
+    TestCall(PetscArrayzero(U, 2 * l->n));
     if (j >= 2 * l->first && j < 2 * (l->first + l->n)) F[j - 2 * l->first] = 1;
-    PetscCall(NearFieldApply(w->coupling->mobility->near, 1, F, U));
-    PetscCall(LayoutGather(l, 2, U, C + j * N));
+    TestCall(NearFieldApply(w->coupling->mobility->near, 1, F, U));
+    TestCall(LayoutGather(l, 2, U, C + j * N));
   }
-  PetscCall(PetscFree2(F, U));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(F, U));
 }
 
 /* max |C - C^T| over max |C| inside the blocks of vesicles with themselves, and between different ones. */
@@ -176,47 +167,32 @@ static void Asymmetry(Layout l, const PetscReal *C, PetscReal worst[2]) {
   for (int k = 0; k < 2; k++) worst[k] /= largest;
 }
 
-/* A world whose every rank has the scene to itself. */
-static PetscErrorCode SerialWorld(const char options[], TestWorld *w) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscOptionsInsertString(NULL, PAPER_MEMBRANE));
-  PetscCall(PetscOptionsInsertString(NULL, options));
-  PetscCall(SceneCreate(PETSC_COMM_SELF, NULL, NULL, &w->scene));
-  PetscCall(TestWorldBuild(w));
-  PetscCall(TestWorldPlace(w->fluid->a0, w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* C is symmetric, and the same on one rank and on all. */
-static PetscErrorCode CheckSymmetry(const char name[], const char scene[], const char kernel[]) {
-  char options[512];
+static void CheckSymmetry(const char name[], const char scene[], const char kernel[]) {
   TestWorld w, alone;
-  PetscReal *C, *same, worst[2], apart = 0, largest = 0;
+  PetscReal worst[2], apart = 0, largest = 0;
   PetscInt blocks;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options), EXACT "-scheme_type coupled -delta_type %s %s", kernel, scene));
-  PetscCall(TestWorldCreate(options, &w));
+  TestWorldCreate(&w, EXACT "-scheme_type coupled -delta_type %s %s", kernel, scene);
   const PetscInt N = 2 * w.layout->M;
-  PetscCall(PetscMalloc2(N * N, &C, N * N, &same));
-  PetscCall(WholeMatrix(&w, C));
+  PetscReal *C = TestReals(N * N), *same = TestReals(N * N);
+  WholeMatrix(&w, C);
   blocks = w.coupling->mobility->near->list.count.blocks;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &blocks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, &blocks, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   Asymmetry(w.layout, C, worst);
   CHECK(worst[0] < 1e-14 && worst[1] < 1e-13, "%s, %s: C of %d blocks symmetric to %.1e, %.1e between vesicles", name,
         kernel, (int)blocks, worst[0], worst[1]);
-  PetscCall(SerialWorld(options, &alone));
-  PetscCall(WholeMatrix(&alone, same));
+  TestCall(SceneCreate(PETSC_COMM_SELF, NULL, NULL, &alone.scene)); /* of the same options, on every rank by itself */
+  TestWorldBuild(&alone);
+  TestWorldPlace(alone.fluid->a0, &alone);
+  WholeMatrix(&alone, same);
   for (PetscInt k = 0; k < N * N; k++) {
     apart = PetscMax(apart, PetscAbsReal(C[k] - same[k]));
     largest = PetscMax(largest, PetscAbsReal(same[k]));
   }
   CHECK(apart < 1e-14 * largest, "%s, %s: C of all ranks is that of one, apart by %.1e of its largest", name, kernel,
         apart / largest);
-  PetscCall(PetscFree2(C, same));
-  PetscCall(TestWorldDestroy(&alone));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&alone);
+  TestWorldDestroy(&w);
 }
 
 #define TWO_WALLS                                                                                                      \
@@ -249,19 +225,16 @@ static PetscReal Gap(const TestWorld *w, PetscInt v, PetscInt u) {
 
 /* Vesicles up to NEAR_REACH apart, over the seam too, have all their pairs in C, others none; each rank its own rows.
  */
-static PetscErrorCode CheckReach(void) {
+static void CheckReach(void) {
   TestWorld w;
   PetscReal *C;
   PetscInt count[3] = {0, 0, 0}; /* near, far, wrong */
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(EXACT
-                            "-scheme_type coupled -domain_cells 320,96 -domain_box 0,20,0,6 -domain_bc_x periodic "
+  TestWorldCreate(&w, EXACT "-scheme_type coupled -domain_cells 320,96 -domain_box 0,20,0,6 -domain_bc_x periodic "
                             "-fluid_inertia none -vesicle_count 9 -vesicle_semi_axes 0.3,0.5 -vesicle_markers 27 "
-                            "-vesicle_center 0.2,1,2.1,1.4,4.6,1,4.2,3,9.8,4.4,9.2,2.2,12.9,3.8,17,1,19.3,1.9",
-                            &w));
+                            "-vesicle_center 0.2,1,2.1,1.4,4.6,1,4.2,3,9.8,4.4,9.2,2.2,12.9,3.8,17,1,19.3,1.9");
   const Layout l = w.layout;
-  PetscCall(PetscCalloc1(4 * l->M * l->M, &C));
-  PetscCall(NearFieldAdd(w.coupling->mobility->near, 1, PETSC_TRUE, 0, l->M, C));
+  TestCall(PetscCalloc1(4 * l->M * l->M, &C));
+  TestCall(NearFieldAdd(w.coupling->mobility->near, 1, PETSC_TRUE, 0, l->M, C));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt u = 0; u < l->bodies; u++) {
       PetscInt pairs = 0;
@@ -274,28 +247,25 @@ static PetscErrorCode CheckReach(void) {
       count[near ? 0 : 1]++;
       count[2] += pairs != (near ? LayoutCount(l, v) * LayoutCount(l, u) : 0);
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(count[0] > 15 && count[1] > 40 && !count[2],
         "nine vesicles: %d pairs nearer than %d cells have C, %d others have none, %d are wrong", (int)count[0],
         NEAR_REACH, (int)count[1], (int)count[2]);
-  PetscCall(PetscFree(C));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(C));
+  TestWorldDestroy(&w);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const kernels[] = {"cbs54", "ib6"};
   OffsetTable table;
-  PetscFunctionBeginUser;
-  PetscCall(LatticeStokeslet(42, &table));
-  PetscCall(CheckTable(&table));
-  PetscCall(CheckPeriodicGrid(&table));
-  PetscCall(CheckReach());
+  TestCall(LatticeStokeslet(42, &table));
+  CheckTable(&table);
+  CheckPeriodicGrid(&table);
+  CheckReach();
   for (int k = 0; k < 2; k++) {
-    PetscCall(CheckSymmetry("two, walls", TWO_WALLS, kernels[k]));
-    PetscCall(CheckSymmetry("three, periodic", THREE_PERIODIC, kernels[k]));
-    PetscCall(CheckSymmetry("over a seam", SEAM, kernels[k]));
+    CheckSymmetry("two, walls", TWO_WALLS, kernels[k]);
+    CheckSymmetry("three, periodic", THREE_PERIODIC, kernels[k]);
+    CheckSymmetry("over a seam", SEAM, kernels[k]);
   }
-  PetscCall(OffsetTableDestroy(&table));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(OffsetTableDestroy(&table));
 }

@@ -36,27 +36,24 @@ static void Residual(const PairKernel *k, int c, const PetscReal x[2], PetscReal
   *divergence = PetscMax(*divergence, PetscAbsReal(sum[2]));
 }
 
-static PetscErrorCode CheckStokes(const PairKernel *k) {
+static void CheckStokes(const PairKernel *k) {
   const PetscReal place[4][2] = {{1.1, 0.3}, {-0.2, 0.9}, {-0.8, -1.2}, {0.1, -1}};
-  PetscFunctionBeginUser;
   for (int c = 0; c < 2; c++)
     for (int q = 0; q < 4; q++) {
       PetscReal momentum = 0, divergence = 0;
       Residual(k, c, place[q], &momentum, &divergence);
       CHECK(momentum < 2e-7 && divergence < 2e-8, "%s, component %d at (%g, %g): a Stokes flow to %.0e, div u %.0e",
-            k->name, c, (double)place[q][0], (double)place[q][1], (double)momentum, (double)divergence);
+            k->name, c, place[q][0], place[q][1], momentum, divergence);
     }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The traction of a force on a circle about it is minus the force; a circle of sources with the same jump J gives the
    velocity -J inside and none outside. */
-static PetscErrorCode CheckStrength(void) {
+static void CheckStrength(void) {
   enum { POINTS = 64 };
   const PetscReal inside[2] = {0.3, -0.1}, outside[2] = {1.9, 0.4};
   const Lanes zero = {0};
   PetscReal force = 0, jump[2] = {0, 0};
-  PetscFunctionBeginUser;
   for (int q = 0; q < POINTS; q++) {
     const PetscReal angle = 2 * PETSC_PI * q / POINTS, n[2] = {PetscCosReal(angle), PetscSinReal(angle)}, e = 1e-4;
     PetscReal flow[3], side[2][3], traction;
@@ -78,34 +75,29 @@ static PetscErrorCode CheckStrength(void) {
       jump[s] += D[0][0];
     }
   }
-  CHECK(PetscAbsReal(force + 1) < 1e-7, "the traction of a unit force adds up to -1: %.0e", (double)(force + 1));
+  CHECK(PetscAbsReal(force + 1) < 1e-7, "the traction of a unit force adds up to -1: %.0e", (force + 1));
   CHECK(PetscAbsReal(jump[1] - jump[0] - 1) < 1e-10 && PetscAbsReal(jump[1]) < 1e-10,
-        "a circle of unit jumps: %g inside, %.0e outside", (double)jump[0], (double)jump[1]);
-  PetscFunctionReturn(PETSC_SUCCESS);
+        "a circle of unit jumps: %g inside, %.0e outside", jump[0], jump[1]);
 }
 
 /* Unit sources with the parts of a source (force, or tensor of J and N) give its K. */
-static PetscErrorCode CheckParts(const PairKernel *k) {
+static void CheckParts(const PairKernel *k) {
   const Lanes x = {0.3, -1.2, 2, -0.7}, y = {0.8, 0.1, -1.5, -0.6}, normal[2] = {N[0] + (Lanes){0}, N[1] + (Lanes){0}};
   Lanes part[PAIR_PARTS], K[4], free[3];
   PetscReal worst = 0;
-  PetscFunctionBeginUser;
   k->parts(&set, x, y, part);
   k->contract(part, normal, K);
   PairFree(k, &set, x, y, normal, free);
   for (int q = 0; q < 4; q++)
     for (int t = 0; t < LANES; t++) worst = PetscMax(worst, PetscAbsReal(K[q][t] - free[PetscMin(q, 2)][t]));
-  CHECK(worst < 1e-15, "%s: parts of unit sources make the kernel to %.0e", k->name, (double)worst);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CHECK(worst < 1e-15, "%s: parts of unit sources make the kernel to %.0e", k->name, worst);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   const PairKernel *const kernels[] = {&stokeslet, &stresslet};
-  PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
-    PetscCall(CheckStokes(kernels[k]));
-    PetscCall(CheckParts(kernels[k]));
+    CheckStokes(kernels[k]);
+    CheckParts(kernels[k]);
   }
-  PetscCall(CheckStrength());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckStrength();
 }

@@ -19,127 +19,99 @@ enum { MODES = 8, LOW = 12, COEFFICIENTS = 2 * (2 * LOW + 1) };
 
 typedef struct {
   TestWorld w;
-  Stokes stokes;
   Vec force, velocity;
   PetscReal center[2];
 } Circle;
 
-static PetscErrorCode CircleCreate(const char kernel[], PetscReal turn, const PetscReal center[2], Circle *c) {
-  char options[1024];
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          OPTIONS "-vesicle_angle %g -vesicle_center %.16g,%.16g -delta_type %s", (double)turn,
-                          (double)center[0], (double)center[1], kernel));
-  PetscCall(TestWorldCreate(options, &c->w));
+static void CircleCreate(const char kernel[], PetscReal turn, const PetscReal center[2], Circle *c) {
+  TestWorldCreate(&c->w, OPTIONS "-vesicle_angle %g -vesicle_center %.16g,%.16g -delta_type %s", turn, center[0],
+                  center[1], kernel);
   for (int d = 0; d < 2; d++) c->center[d] = center[d];
-  PetscCall(StokesCreate(c->w.fluid, &c->stokes));
-  PetscCall(TestVecs(c->w.X, &c->force, &c->velocity, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CircleDestroy(Circle *c) {
-  PetscFunctionBeginUser;
-  PetscCall(StokesDestroy(&c->stokes));
-  PetscCall(TestWorldDestroy(&c->w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestVecs(c->w.X, &c->force, &c->velocity, NULL);
 }
 
 /* x += factor e^{i (k theta + phase)} at the own markers. */
-static PetscErrorCode AddMode(Circle *c, int k, PetscReal factor, PetscReal phase, Vec x) {
+static void AddMode(Circle *c, int k, PetscReal factor, PetscReal phase, Vec x) {
   const PetscScalar *X;
   PetscScalar *a;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(c->w.X, &X));
-  PetscCall(VecGetArray(x, &a));
+  TestCall(VecGetArrayRead(c->w.X, &X));
+  TestCall(VecGetArray(x, &a));
   for (PetscInt j = 0; j < c->w.layout->n; j++) {
     const PetscReal theta = atan2(X[2 * j + 1] - c->center[1], X[2 * j] - c->center[0]);
     a[2 * j] += factor * PetscCosReal(k * theta + phase);
     a[2 * j + 1] += factor * PetscSinReal(k * theta + phase);
   }
-  PetscCall(VecRestoreArray(x, &a));
-  PetscCall(VecRestoreArrayRead(c->w.X, &X));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArray(x, &a));
+  TestCall(VecRestoreArrayRead(c->w.X, &X));
 }
 
 /* Coefficient of e^{i k theta} in x, on every rank. */
-static PetscErrorCode Coefficient(Circle *c, int k, Vec x, PetscReal z[2]) {
+static void Coefficient(Circle *c, int k, Vec x, PetscReal z[2]) {
   Vec wave;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(x, &wave, NULL));
+  TestVecs(x, &wave, NULL);
   for (int part = 0; part < 2; part++) {
-    PetscCall(VecZeroEntries(wave));
-    PetscCall(AddMode(c, k, 1. / c->w.layout->M, part * PETSC_PI / 2, wave));
-    PetscCall(VecDot(x, wave, &z[part]));
+    TestCall(VecZeroEntries(wave));
+    AddMode(c, k, 1. / c->w.layout->M, part * PETSC_PI / 2, wave);
+    z[part] = TestDot(x, wave);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* velocity = E A^-1 E^T F/h^2, and with C F, of the force of mode k, less the exact one, over its size. */
-static PetscErrorCode Disturb(Circle *c, int k, PetscReal phase, PetscBool with) {
+static void Disturb(Circle *c, int k, PetscReal phase, PetscBool with) {
   const PetscReal size = RADIUS / (4 * c->w.fluid->nu * PetscAbsInt(k));
-  PetscFunctionBeginUser;
-  PetscCall(VecZeroEntries(c->force));
-  PetscCall(AddMode(c, k, 2 * PETSC_PI * RADIUS / c->w.layout->M, phase, c->force));
-  PetscCall(TestWorldRespond(&c->w, c->stokes, with, c->force, c->velocity));
-  PetscCall(AddMode(c, k, -size, phase, c->velocity));
-  PetscCall(VecScale(c->velocity, 1 / size));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecZeroEntries(c->force));
+  AddMode(c, k, 2 * PETSC_PI * RADIUS / c->w.layout->M, phase, c->force);
+  TestWorldRespond(&c->w, with, c->force, c->velocity);
+  AddMode(c, k, -size, phase, c->velocity);
+  TestCall(VecScale(c->velocity, 1 / size));
 }
 
 /* The error of a mode without its constant and linear part, and its modes up to LOW; error[0]: its largest value,
    error[1]: that of what is in higher modes. */
-static PetscErrorCode ModeError(Circle *c, int k, PetscReal phase, PetscReal error[2], PetscReal z[COEFFICIENTS]) {
-  PetscFunctionBeginUser;
-  PetscCall(Disturb(c, k, phase, PETSC_TRUE));
+static void ModeError(Circle *c, int k, PetscReal phase, PetscReal error[2], PetscReal z[COEFFICIENTS]) {
+  Disturb(c, k, phase, PETSC_TRUE);
   for (int q = 0; q <= LOW; q++)
     for (int sign = -1; sign <= (q ? 1 : -1); sign += 2) {
       PetscReal *at = z + 2 * (LOW + sign * q);
-      if (q == 2 && sign < 0) PetscCall(VecNorm(c->velocity, NORM_INFINITY, &error[0]));
-      PetscCall(Coefficient(c, sign * q, c->velocity, at));
-      PetscCall(AddMode(c, sign * q, -at[0], 0, c->velocity));
-      PetscCall(AddMode(c, sign * q, -at[1], PETSC_PI / 2, c->velocity));
+      if (q == 2 && sign < 0) error[0] = TestNorm(NORM_INFINITY, c->velocity);
+      Coefficient(c, sign * q, c->velocity, at);
+      AddMode(c, sign * q, -at[0], 0, c->velocity);
+      AddMode(c, sign * q, -at[1], PETSC_PI / 2, c->velocity);
     }
-  PetscCall(VecNorm(c->velocity, NORM_INFINITY, &error[1]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  error[1] = TestNorm(NORM_INFINITY, c->velocity);
 }
 
 enum { WITHOUT, SECOND, OTHERS, SPREAD, FOUND };
 
 /* First: keep the errors' modes; later: by how much they, and what is in higher modes, differ. */
-static PetscErrorCode CircleErrors(Circle *c, PetscBool first, PetscReal kept[MODES][2][COEFFICIENTS],
-                                   PetscReal found[FOUND]) {
-  PetscReal error[2], z[COEFFICIENTS], norm;
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(found, FOUND));
+static void CircleErrors(Circle *c, PetscBool first, PetscReal kept[MODES][2][COEFFICIENTS], PetscReal found[FOUND]) {
+  PetscReal error[2] = {0}, z[COEFFICIENTS];
+  TestCall(PetscArrayzero(found, FOUND));
   for (int k = 0; k < MODES; k++)
     for (int part = 0; part < 2; part++) {
       PetscReal *at = &found[PetscAbsInt(modes[k]) == 2 ? SECOND : OTHERS], apart = 0;
-      PetscCall(Disturb(c, modes[k], part * PETSC_PI / 2, PETSC_FALSE));
-      PetscCall(VecNorm(c->velocity, NORM_INFINITY, &norm));
-      found[WITHOUT] = PetscMax(found[WITHOUT], norm);
-      PetscCall(ModeError(c, modes[k], part * PETSC_PI / 2, error, z));
-      if (first) PetscCall(PetscArraycpy(kept[k][part], z, COEFFICIENTS));
+      Disturb(c, modes[k], part * PETSC_PI / 2, PETSC_FALSE);
+      found[WITHOUT] = PetscMax(found[WITHOUT], TestNorm(NORM_INFINITY, c->velocity));
+      ModeError(c, modes[k], part * PETSC_PI / 2, error, z);
+      if (first) TestCall(PetscArraycpy(kept[k][part], z, COEFFICIENTS));
       for (int q = 0; q < COEFFICIENTS; q++) apart += PetscSqr(z[q] - kept[k][part][q]);
       found[SPREAD] = PetscMax(found[SPREAD], PetscSqrtReal(apart) + error[1]);
       *at = PetscMax(*at, error[0]);
     }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckCircle(const char kernel[], PetscReal turn, const PetscReal center[2], PetscBool first,
-                                  PetscReal kept[MODES][2][COEFFICIENTS]) {
+static void CheckCircle(const char kernel[], PetscReal turn, const PetscReal center[2], PetscBool first,
+                        PetscReal kept[MODES][2][COEFFICIENTS]) {
   Circle c;
   PetscReal found[FOUND];
-  PetscFunctionBeginUser;
-  PetscCall(CircleCreate(kernel, turn, center, &c));
-  PetscCall(CircleErrors(&c, first, kept, found));
+  CircleCreate(kernel, turn, center, &c);
+  CircleErrors(&c, first, kept, found);
   CHECK(found[SECOND] < 1.5e-3 && found[OTHERS] < 4e-4 && found[WITHOUT] > 0.2,
         "circle, %s, turned by %g degrees, at %.4f, %.4f: modes 2 of the single layer to %.1e, higher ones to %.1e; "
         "without C %.2f",
         kernel, turn, center[0], center[1], found[SECOND], found[OTHERS], found[WITHOUT]);
   CHECK(found[SPREAD] < 2e-4, "   apart from the first circle's by %.1e", found[SPREAD]);
-  PetscCall(CircleDestroy(&c));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&c.w);
 }
 
 /* A pair seen from a wall, in cells: x along it, response minus source; a, b the distances of response and source. */
@@ -173,16 +145,15 @@ static PetscReal ImageOfTables(const ImageTable *half, const OffsetTable *free, 
 
 /* Off the wall the closed forms of images are what kernels and lattice make of them. With the first two orders alone
    they are off by 1.5e-6 to 1.8e-6 at 14 cells. */
-static PetscErrorCode CheckImages(PetscReal R, PetscReal bound) {
+static void CheckImages(PetscReal R, PetscReal bound) {
   static const char *const name[IMAGE_PARTS] = {"tt", "nn", "nt", "tn"};
   OffsetTable free;
   ImageTable *half;
   ImageKernel kernel;
   PetscReal most[IMAGE_PARTS] = {0};
-  PetscFunctionBeginUser;
-  PetscCall(LatticeStokeslet(2 * IMAGE_SHIFT, &free));
-  PetscCall(PetscNew(&half));
-  PetscCall(stokeslet.image_fill(&free, half));
+  TestCall(LatticeStokeslet(2 * IMAGE_SHIFT, &free));
+  TestCall(PetscNew(&half));
+  TestCall(stokeslet.image_fill(&free, half));
   stokeslet.image_make(KernelFind("cbs54"), &kernel);
   for (int q = 0; q < 60; q++) { /* angles, places between wall and wall, places in a cell */
     const PetscReal turn = 0.9 * (q % 12) / 12, H = R * PetscCosReal(turn), part = (q % 5 + 0.5) / 5;
@@ -200,25 +171,21 @@ static PetscErrorCode CheckImages(PetscReal R, PetscReal bound) {
     most[IMAGE_TN] = PetscMax(most[IMAGE_TN], PetscAbsReal(left[IMAGE_TN][0] - other[IMAGE_NT][0]));
   }
   for (int k = 0; k < IMAGE_TN; k++)
-    CHECK(most[k] < bound, "%s of images %g cells away: closed form and sums are apart by %.1e", name[k], (double)R,
-          (double)most[k]);
-  CHECK(most[IMAGE_TN] < 1e-16, "tn is nt with the ends exchanged: %.0e", (double)most[IMAGE_TN]);
-  PetscCall(PetscFree(half));
-  PetscCall(OffsetTableDestroy(&free));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    CHECK(most[k] < bound, "%s of images %g cells away: closed form and sums are apart by %.1e", name[k], R, most[k]);
+  CHECK(most[IMAGE_TN] < 1e-16, "tn is nt with the ends exchanged: %.0e", most[IMAGE_TN]);
+  TestCall(PetscFree(half));
+  TestCall(OffsetTableDestroy(&free));
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const kernels[] = {"cbs54", "ib6"};
   static const PetscReal cell = 5. / 160, shift[][2] = {{0, 0}, {0.37, 0}, {0.5, 0.5}, {0.21, 0.83}};
   static PetscReal kept[MODES][2][COEFFICIENTS];
-  PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++)
     for (int s = 0; s < 4; s++) {
       const PetscReal center[2] = {2.5 + shift[s][0] * cell, 2.5 + shift[s][1] * cell};
-      PetscCall(CheckCircle(kernels[k], s % 2 ? 17 : 0, center, s == 0 && k == 0 ? PETSC_TRUE : PETSC_FALSE, kept));
+      CheckCircle(kernels[k], s % 2 ? 17 : 0, center, s == 0 && k == 0 ? PETSC_TRUE : PETSC_FALSE, kept);
     }
-  PetscCall(CheckImages(IMAGE_OFF, 1e-6));
-  PetscCall(CheckImages(IMAGE_CELLS, 2e-7));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckImages(IMAGE_OFF, 1e-6);
+  CheckImages(IMAGE_CELLS, 2e-7);
 }

@@ -9,55 +9,44 @@
   "-vesicle_allow_close_markers -fluid_viscosity 1 -domain_box -4,4,-4,4 "
 
 /* An ellipse .8 x .4 with its flat side `gap` cells of the 48^2 grid from a wall; side: y_min, y_max, x_min, x_max. */
-static PetscErrorCode CreateAtWall(PetscInt cells, PetscInt markers, PetscReal gap, int side, const char more[],
-                                   TestWorld *w) {
+static void CreateAtWall(PetscInt cells, PetscInt markers, PetscReal gap, int side, const char more[], TestWorld *w) {
   const PetscReal from = (side % 2 ? -1 : 1) * (0.4 + gap * H - 4), across = side / 2 ? 0 : 0.03;
-  char options[1024];
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          SCENE "-domain_cells %d,%d -vesicle_markers %d -vesicle_center %.16g,%.16g "
-                                "-vesicle_semi_axes %s %s",
-                          (int)cells, (int)cells, (int)markers, (double)(side / 2 ? from : across),
-                          (double)(side / 2 ? 0.03 : from), side / 2 ? "0.4,0.8" : "0.8,0.4", more));
-  PetscCall(TestWorldCreate(options, w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldCreate(w,
+                  SCENE "-domain_cells %d,%d -vesicle_markers %d -vesicle_center %.16g,%.16g "
+                        "-vesicle_semi_axes %s %s",
+                  (int)cells, (int)cells, (int)markers, (side / 2 ? from : across), (side / 2 ? 0.03 : from),
+                  side / 2 ? "0.4,0.8" : "0.8,0.4", more);
 }
 
 /* The velocity, [2 markers] on every rank, of a smooth force in a channel of cells^2. */
-static PetscErrorCode SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal gap, PetscReal U[]) {
+static void SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal gap, PetscReal U[]) {
   TestWorld t;
-  Stokes stokes;
   Vec F, velocity;
   PetscScalar *f;
-  PetscFunctionBeginUser;
-  PetscCall(CreateAtWall(cells, markers, gap, 0, "-domain_bc_x periodic -fluid_inertia none", &t));
-  PetscCall(StokesCreate(t.fluid, &stokes));
-  PetscCall(TestVecs(t.X, &F, &velocity, NULL));
-  PetscCall(VecGetArray(F, &f));
+  CreateAtWall(cells, markers, gap, 0, "-domain_bc_x periodic -fluid_inertia none", &t);
+  TestVecs(t.X, &F, &velocity, NULL);
+  TestCall(VecGetArray(F, &f));
   for (PetscInt k = 0; k < t.layout->n; k++) {
     const PetscReal a = 2 * PETSC_PI * k / markers;
     f[2 * k] = (PetscCosReal(2 * a) + 0.3 * PetscSinReal(3 * a) - 0.4 * PetscSinReal(a)) / markers;
     f[2 * k + 1] = (0.7 * PetscSinReal(2 * a) + 0.5 * PetscCosReal(3 * a) + 0.2 * PetscCosReal(a)) / markers;
   }
-  PetscCall(VecRestoreArray(F, &f));
-  PetscCall(TestWorldRespond(&t, stokes, PETSC_TRUE, F, velocity));
-  PetscCall(LayoutGatherVec(t.layout, velocity, U));
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArray(F, &f));
+  TestWorldRespond(&t, PETSC_TRUE, F, velocity);
+  TestCall(LayoutGatherVec(t.layout, velocity, U));
+  TestWorldDestroy(&t);
 }
 
 /* 48^2 against 192^2, where every gap is four times as many cells: what is left is the grid's own error, of second
    order, and the closed form's from 14 cells on. */
-static PetscErrorCode CheckVelocity(void) {
+static void CheckVelocity(void) {
   static const PetscReal gaps[] = {8, 4, 3, 2, 1, 0.5, 0.25};
   enum { M = 67 };
   PetscReal coarse[2 * M], fine[2 * M];
-  PetscFunctionBeginUser;
   for (int k = 0; k < 7; k++) {
     PetscReal error = 0, size = 0;
-    PetscCall(SmoothVelocity(48, M, gaps[k], coarse));
-    PetscCall(SmoothVelocity(192, M, gaps[k], fine));
+    SmoothVelocity(48, M, gaps[k], coarse);
+    SmoothVelocity(192, M, gaps[k], fine);
     for (int i = 0; i < 2 * M; i++) {
       error += PetscSqr(coarse[i] - fine[i]);
       size += PetscSqr(fine[i]);
@@ -65,16 +54,13 @@ static PetscErrorCode CheckVelocity(void) {
     error = PetscSqrtReal(error / size);
     CHECK(error < 2e-4, "gap %g cells: velocity within %.1e of a grid four times as fine", gaps[k], error);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Mobility + level times the projection on the normals: whether all its eigenvalues are positive. */
-static PetscErrorCode IsPositive(TestWorld *t, PetscReal level, PetscReal Mob[], PetscBool *positive) {
+static PetscBool IsPositive(TestWorld *t, PetscReal level, PetscReal Mob[]) {
   const PetscInt M = t->layout->M, N = 2 * M;
   const PetscReal *X = t->coupling->markers->X;
-  PetscReal *normal, *eigenvalue, norm = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(N, &normal, N, &eigenvalue));
+  PetscReal *normal = TestReals(N), *eigenvalue = TestReals(N), norm = 0;
   for (PetscInt k = 0; k < M; k++) {
     const PetscInt a = (k + 1) % M, b = (k + M - 1) % M;
     normal[2 * k] = X[2 * a + 1] - X[2 * b + 1];
@@ -83,101 +69,82 @@ static PetscErrorCode IsPositive(TestWorld *t, PetscReal level, PetscReal Mob[],
   for (PetscInt k = 0; k < N; k++) norm += PetscSqr(normal[k]);
   for (PetscInt j = 0; j < N; j++)
     for (PetscInt i = 0; i < N; i++) Mob[j * N + i] += level * normal[i] * normal[j] / norm;
-  PetscCall(DenseEigen(N, Mob, eigenvalue));
-  *positive = eigenvalue[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscFree2(normal, eigenvalue));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(DenseEigen(N, Mob, eigenvalue));
+  return eigenvalue[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* a0 h^2/nu, markers on the ellipse of 23 h, gap. The mobility, .3 at most, is symmetric, and positive but for the
    leak along the normals: what takes that off, .05 along them, leaves no other negative direction. */
-static PetscErrorCode CheckPositive(PetscReal coefficient, PetscInt markers, PetscReal gap) {
+static void CheckPositive(PetscReal coefficient, PetscInt markers, PetscReal gap) {
   const PetscInt N = 2 * markers;
   TestWorld t;
-  Stokes stokes;
   Vec F, U;
-  PetscReal *Mob, asymmetry = 0, largest = 0;
-  PetscBool positive;
-  PetscFunctionBeginUser;
-  PetscCall(CreateAtWall(48, markers, gap, 1,
-                         coefficient > 0 ? "-domain_bc_x periodic -fluid_inertia unsteady"
-                                         : "-domain_bc_x periodic -fluid_inertia none",
-                         &t));
-  if (coefficient > 0) PetscCall(FluidSetTimeCoefficient(t.fluid, coefficient / (H * H)));
-  PetscCall(StokesCreate(t.fluid, &stokes));
-  PetscCall(TestVecs(t.X, &F, &U, NULL));
-  PetscCall(PetscMalloc1(N * N, &Mob));
+  PetscReal *Mob = TestReals(N * N), asymmetry = 0, largest = 0;
+  CreateAtWall(48, markers, gap, 1,
+               coefficient > 0 ? "-domain_bc_x periodic -fluid_inertia unsteady"
+                               : "-domain_bc_x periodic -fluid_inertia none",
+               &t);
+  if (coefficient > 0) TestCall(FluidSetTimeCoefficient(t.fluid, coefficient / (H * H)));
+  TestVecs(t.X, &F, &U, NULL);
   for (PetscInt j = 0; j < N; j++) {
-    PetscCall(TestUnit(j, F));
-    PetscCall(TestWorldRespond(&t, stokes, PETSC_TRUE, F, U));
-    PetscCall(LayoutGatherVec(t.layout, U, Mob + j * N));
+    TestUnit(j, F);
+    TestWorldRespond(&t, PETSC_TRUE, F, U);
+    TestCall(LayoutGatherVec(t.layout, U, Mob + j * N));
   }
   for (PetscInt j = 0; j < N; j++)
     for (PetscInt i = 0; i < N; i++) {
       asymmetry = PetscMax(asymmetry, PetscAbsReal(Mob[j * N + i] - Mob[i * N + j]));
       largest = PetscMax(largest, PetscAbsReal(Mob[j * N + i]));
     }
-  PetscCall(IsPositive(&t, 0.05, Mob, &positive));
-  CHECK(asymmetry < 1e-12 * largest && positive,
+  CHECK(asymmetry < 1e-12 * largest && IsPositive(&t, 0.05, Mob),
         "a0 h^2/nu = %g, %d markers %g cells from a wall: mobility symmetric to %.1e and positive", coefficient,
         (int)markers, gap, asymmetry / largest);
-  PetscCall(PetscFree(Mob));
-  PetscCall(StokesDestroy(&stokes));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&t);
 }
 
 /* (C F)_k of marker forces that turn and mirror with the wall: component d of all markers along (0) and away from it
  * (1). */
-static PetscErrorCode NearVelocity(int side, PetscReal shift, PetscReal U[][2]) {
+static void NearVelocity(int side, PetscReal shift, PetscReal U[][2]) {
   enum { M = 48 }; /* a multiple of 4: the markers turn and mirror into markers */
   TestWorld t;
-  PetscScalar *F, *V;
   PetscReal all[2 * M];
-  PetscFunctionBeginUser;
-  PetscCall(CreateAtWall(48, M, 0.5, side, "-fluid_inertia none", &t));
+  CreateAtWall(48, M, 0.5, side, "-fluid_inertia none", &t);
   const int normal = side / 2 ? 0 : 1, sign = side % 2 ? -1 : 1;
-  PetscCall(PetscCalloc2(2 * t.layout->n, &F, 2 * t.layout->n, &V));
+  PetscReal *F = TestReals(2 * t.layout->n), *V = TestReals(2 * t.layout->n);
   for (PetscInt k = 0; k < t.layout->n; k++) {
     const PetscReal *X = t.coupling->markers->X + 2 * (t.layout->first + k);
     const PetscReal x = X[1 - normal] - shift, y = sign * X[normal] + 4;
     F[2 * k + 1 - normal] = PetscSinReal(3 * x + y) + x;
     F[2 * k + normal] = sign * (PetscCosReal(2 * x - 5 * y) + x * y);
   }
-  PetscCall(NearFieldApply(t.coupling->mobility->near, 1, F, V));
-  PetscCall(LayoutGather(t.layout, 2, V, all));
+  TestCall(NearFieldApply(t.coupling->mobility->near, 1, F, V));
+  TestCall(LayoutGather(t.layout, 2, V, all));
   for (int k = 0; k < M; k++) {
     U[k][0] = all[2 * k + 1 - normal];
     U[k][1] = sign * all[2 * k + normal];
   }
-  PetscCall(PetscFree2(F, V));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&t);
 }
 
 /* Sums of squares do not depend on which marker is the first one. */
-static PetscErrorCode CheckSides(void) {
+static void CheckSides(void) {
   PetscReal U[4][48][2], sum[4][2] = {{0}}, worst = 0;
-  PetscFunctionBeginUser;
   for (int side = 0; side < 4; side++) {
-    PetscCall(NearVelocity(side, 0.03, U[side]));
+    NearVelocity(side, 0.03, U[side]);
     for (int k = 0; k < 48; k++)
       for (int d = 0; d < 2; d++) sum[side][d] += PetscSqr(U[side][k][d]);
     for (int d = 0; d < 2; d++) worst = PetscMax(worst, PetscAbsReal(sum[side][d] / sum[0][d] - 1));
   }
   CHECK(worst < 1e-12 && sum[0][0] > 0 && sum[0][1] > 0, "the near field at four walls is one, apart by %.1e", worst);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const PetscReal coefficients[] = {0, 0.1, 1, 10}, gaps[] = {3, 2, 0.5, 0.25};
-  PetscFunctionBeginUser;
-  PetscCall(CheckSides());
-  PetscCall(CheckVelocity());
+  CheckSides();
+  CheckVelocity();
   for (int a = 0; a < 4; a++)
     for (int k = 0; k < 4; k++) {
-      PetscCall(CheckPositive(coefficients[a], 18, gaps[k]));
-      if (a % 3 == 0) PetscCall(CheckPositive(coefficients[a], 45, gaps[k]));
+      CheckPositive(coefficients[a], 18, gaps[k]);
+      if (a % 3 == 0) CheckPositive(coefficients[a], 45, gaps[k]);
     }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

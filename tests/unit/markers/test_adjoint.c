@@ -5,129 +5,114 @@
 #define TOLERANCE 1e-13 /* relative: round-off of sums of some thousand terms */
 
 /* |A x - B x| / |B x| on a vector of the shell's domain. */
-static PetscErrorCode Difference(Mat A, Mat B, Vec x, PetscReal *error) {
+static PetscReal Difference(Mat A, Mat B, Vec x) {
   Vec a, b;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(x, &a, &b, NULL));
-  PetscCall(MatMult(A, x, a));
-  PetscCall(MatMult(B, x, b));
-  PetscCall(TestApart(NORM_2, a, b, error));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestVecs(x, &a, &b, NULL);
+  TestCall(MatMult(A, x, a));
+  TestCall(MatMult(B, x, b));
+  return TestApart(NORM_2, a, b);
 }
 
 /* One component's part of a velocity as a vector of its own DMDA, for the assembled operator. */
-static PetscErrorCode HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscReal nu, Vec w, Vec Hw,
-                                          PetscReal *error) {
+static PetscReal HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscReal nu, Vec w, Vec Hw) {
   const PetscInt n = g->columns[f] * g->rows[f];
   const PetscScalar *wa;
   PetscScalar *xa;
   Mat A;
   Vec x, y, Ax;
-  PetscFunctionBeginUser;
-  PetscCall(GridAssemble(g, f, a0, nu, &A));
-  PetscCall(TestFieldVecs(g->da[f], &x, &y, &Ax, NULL));
+  TestCall(GridAssemble(g, f, a0, nu, &A));
+  TestFieldVecs(g->da[f], &x, &y, &Ax, NULL);
   for (int k = 0; k < 2; k++) {
-    PetscCall(VecGetArrayRead(k ? Hw : w, &wa));
-    PetscCall(VecGetArray(k ? y : x, &xa));
-    PetscCall(PetscArraycpy(xa, wa + GridRowStart(g, f, 0), n));
-    PetscCall(VecRestoreArray(k ? y : x, &xa));
-    PetscCall(VecRestoreArrayRead(k ? Hw : w, &wa));
+    TestCall(VecGetArrayRead(k ? Hw : w, &wa));
+    TestCall(VecGetArray(k ? y : x, &xa));
+    TestCall(PetscArraycpy(xa, wa + GridRowStart(g, f, 0), n));
+    TestCall(VecRestoreArray(k ? y : x, &xa));
+    TestCall(VecRestoreArrayRead(k ? Hw : w, &wa));
   }
-  PetscCall(MatMult(A, x, Ax));
-  PetscCall(TestApart(NORM_2, Ax, y, error));
-  PetscCall(MatDestroy(&A));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(MatMult(A, x, Ax));
+  TestCall(MatDestroy(&A));
+  return TestApart(NORM_2, Ax, y);
 }
 
-static PetscErrorCode CheckFluid(const char name[], Fluid f) {
+static void CheckFluid(const char name[], Fluid f) {
   const Grid g = f->grid;
   Vec w, Hw, p;
   Mat A;
-  PetscReal error;
-  PetscFunctionBeginUser;
-  PetscCall(TestFieldVecs(g->velocity, &w, &Hw, NULL));
-  PetscCall(TestFieldVecs(g->da[FIELD_P], &p, NULL));
-  PetscCall(TestRandomVec(1, w));
-  PetscCall(TestRandomVec(2, p));
-  PetscCall(TestTransposed(f->G, p, w, &error));
+  TestFieldVecs(g->velocity, &w, &Hw, NULL);
+  TestFieldVecs(g->da[FIELD_P], &p, NULL);
+  TestRandomVec(1, w);
+  TestRandomVec(2, p);
+  PetscReal error = TestTransposed(f->G, p, w);
   CHECK(error < TOLERANCE, "%s: G and G^T adjoint, error %.1e", name, error);
-  PetscCall(TestTransposed(f->D, w, p, &error));
+  error = TestTransposed(f->D, w, p);
   CHECK(error < TOLERANCE, "%s: D and D^T adjoint, error %.1e", name, error);
-  PetscCall(GridAssemble(g, FIELD_P, 0, -1, &A));
-  PetscCall(Difference(f->L, A, p, &error));
+  TestCall(GridAssemble(g, FIELD_P, 0, -1, &A));
+  error = Difference(f->L, A, p);
   CHECK(error < TOLERANCE, "%s: L = -G^T G is the assembled Laplacian, error %.1e", name, error);
-  PetscCall(MatDestroy(&A));
-  PetscCall(MatMult(f->H, w, Hw));
+  TestCall(MatDestroy(&A));
+  TestCall(MatMult(f->H, w, Hw));
   for (int c = 0; c < 2; c++) {
-    PetscCall(HelmholtzFieldError(g, (Field)c, f->a0, f->nu, w, Hw, &error));
+    error = HelmholtzFieldError(g, (Field)c, f->a0, f->nu, w, Hw);
     CHECK(error < TOLERANCE, "%s: H is the assembled Helmholtz operator of %c, error %.1e", name, c ? 'v' : 'u', error);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckCoupling(const char name[], TestWorld *t) {
+static void CheckCoupling(const char name[], TestWorld *t) {
   const Coupling c = t->coupling;
   Vec w, x, sigma;
-  PetscReal error = 0;
-  PetscFunctionBeginUser;
-  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
-  PetscCall(TestMarkerVecs(t->layout, 2, &x, NULL));
-  PetscCall(TestMarkerVecs(t->layout, 1, &sigma, NULL));
-  PetscCall(TestRandomVec(3, w));
-  PetscCall(TestRandomVec(4, x));
-  PetscCall(TestRandomVec(5, sigma));
+  TestFieldVecs(t->fluid->grid->velocity, &w, NULL);
+  TestMarkerVecs(t->layout, 2, &x, NULL);
+  TestMarkerVecs(t->layout, 1, &sigma, NULL);
+  TestRandomVec(3, w);
+  TestRandomVec(4, x);
+  TestRandomVec(5, sigma);
   const struct {
     const char *name;
     Mat A;
     Vec from, to;
   } pairs[] = {{"E", c->markers->E, w, x}, {"S", c->S, sigma, w}, {"B", c->B, x, w}};
   for (int k = 0; k < 3; k++) {
-    PetscCall(TestTransposed(pairs[k].A, pairs[k].from, pairs[k].to, &error));
+    const PetscReal error = TestTransposed(pairs[k].A, pairs[k].from, pairs[k].to);
     CHECK(error < TOLERANCE, "%s: %s and its transpose are adjoint, error %.1e", name, pairs[k].name, error);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A constant velocity is interpolated as it is (the weights sum to 1), and a spread force keeps its sum: h^2 E^T F/h^2.
    Walls: w = 1 on the faces next to a marker is all that matters. */
-static PetscErrorCode CheckSums(const char name[], TestWorld *t) {
+static void CheckSums(const char name[], TestWorld *t) {
   Vec w, x;
   const PetscScalar *a;
   PetscReal error = 0, sum, want;
-  PetscFunctionBeginUser;
-  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
-  PetscCall(TestMarkerVecs(t->layout, 2, &x, NULL));
-  PetscCall(VecSet(w, 1));
-  PetscCall(MarkersInterpolate(t->coupling->markers, w, x));
-  PetscCall(VecGetArrayRead(x, &a));
+  TestFieldVecs(t->fluid->grid->velocity, &w, NULL);
+  TestMarkerVecs(t->layout, 2, &x, NULL);
+  TestCall(VecSet(w, 1));
+  TestCall(MarkersInterpolate(t->coupling->markers, w, x));
+  TestCall(VecGetArrayRead(x, &a));
   for (PetscInt k = 0; k < 2 * t->layout->n; k++) error = PetscMax(error, PetscAbsReal(a[k] - 1));
-  PetscCall(VecRestoreArrayRead(x, &a));
+  TestCall(VecRestoreArrayRead(x, &a));
   CHECK(error < 1e-13, "%s: a constant velocity is interpolated exactly, error %.1e", name, error);
-  PetscCall(TestRandomVec(6, x));
-  PetscCall(VecSum(x, &want));
-  PetscCall(VecSet(w, 0));
-  PetscCall(MarkersSpread(t->coupling->markers, 2, x, w));
-  PetscCall(VecSum(w, &sum));
+  TestRandomVec(6, x);
+  TestCall(VecSum(x, &want));
+  TestCall(VecSet(w, 0));
+  TestCall(MarkersSpread(t->coupling->markers, 2, x, w));
+  TestCall(VecSum(w, &sum));
   error = PetscAbsReal(sum - 2 * want) / t->layout->M;
   CHECK(error < TOLERANCE, "%s: spreading keeps the sum of the force, error %.1e", name, error);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckCase(const char grid[], const char bc[], const char vesicle[], const char delta[]) {
+static void CheckCase(const char grid[], const char bc[], const char vesicle[], const char delta[]) {
   TestWorld t;
   char options[1024], name[256];
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options), "%s %s %s -delta_type %s", grid, bc, vesicle, delta));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s %s %s", strstr(grid, "-domain_cells") + 14, bc, delta));
-  PetscCall(TestWorldCreate(options, &t));
-  PetscCall(CheckFluid(name, t.fluid));
-  PetscCall(CheckCoupling(name, &t));
-  PetscCall(CheckSums(name, &t));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscSNPrintf(options, sizeof(options), "%s %s %s -delta_type %s", grid, bc, vesicle, delta));
+  TestCall(PetscSNPrintf(name, sizeof(name), "%s %s %s", strstr(grid, "-domain_cells") + 14, bc, delta));
+  TestWorldCreate(&t, "%s", options);
+  CheckFluid(name, t.fluid);
+  CheckCoupling(name, &t);
+  CheckSums(name, &t);
+  TestWorldDestroy(&t);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const bc[] = {"-domain_bc_x wall -domain_bc_y wall", "-domain_bc_x periodic -domain_bc_y wall",
                                    "-domain_bc_x periodic -domain_bc_y periodic"};
   /* the vesicle is tall enough to cross every slab border of 8 ranks, and lies across a seam where there is one */
@@ -137,8 +122,6 @@ PetscErrorCode Facts(void) {
                                       "-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47",
                                       "-domain_box -1,1,-1,0.95918367346938771 -domain_cells 49,48"};
   static const char *const kernels[] = {"ib6", "cbs54"};
-  PetscFunctionBeginUser;
   for (int b = 0; b < 3; b++)
-    for (int g = 0; g < 3; g++) PetscCall(CheckCase(grids[g], bc[b], vesicle[b], kernels[(b + g) % 2]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    for (int g = 0; g < 3; g++) CheckCase(grids[g], bc[b], vesicle[b], kernels[(b + g) % 2]);
 }

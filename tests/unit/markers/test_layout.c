@@ -30,12 +30,11 @@ typedef struct {
 } Case;
 
 /* Ranges follow one another, and every body is in one of them, its owner's. */
-static PetscErrorCode CheckRanges(const Case *c) {
+static void CheckRanges(const Case *c) {
   const Layout l = c->l;
   PetscBool good = l->body[0] == 0 && l->body[l->size] == l->bodies ? PETSC_TRUE : PETSC_FALSE;
   PetscMPIInt own[MOST_BODIES], owners[MOST_BODIES], wrong = 0;
   PetscInt n = 0;
-  PetscFunctionBeginUser;
   for (PetscMPIInt r = 0; r < l->size; r++)
     if (l->body[r] > l->body[r + 1]) good = PETSC_FALSE;
   CHECK(good, "%s: ranges of bodies follow one another from the first body to the last", c->name);
@@ -48,7 +47,7 @@ static PetscErrorCode CheckRanges(const Case *c) {
   CHECK(!wrong && n == l->n, "%s: a rank's markers are those of the bodies that it owns", c->name);
   CHECK(l->own == l->body[l->rank] && l->end == l->body[l->rank + 1] && l->first == c->start[l->own], "%s: own range",
         c->name);
-  PetscCallMPI(MPI_Allreduce(own, owners, (PetscMPIInt)l->bodies, MPI_INT, MPI_SUM, l->comm));
+  TestCall(MPI_Allreduce(own, owners, (PetscMPIInt)l->bodies, MPI_INT, MPI_SUM, l->comm));
   for (PetscInt b = 0; b < l->bodies; b++)
     if (owners[b] != 1) wrong++;
   CHECK(!wrong, "%s: every body has one owner", c->name);
@@ -58,14 +57,12 @@ static PetscErrorCode CheckRanges(const Case *c) {
           l->count[each - 1][r] != each * (c->start[l->body[r + 1]] - c->start[l->body[r]]))
         wrong++;
   CHECK(!wrong, "%s: counts and places of all ranks' numbers", c->name);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A rank's work, the squares of its bodies' markers, is an equal share but for the largest body's. */
-static PetscErrorCode CheckShares(const Case *c) {
+static void CheckShares(const Case *c) {
   const Layout l = c->l;
   PetscReal total = 0, largest = 0, mine = 0;
-  PetscFunctionBeginUser;
   for (PetscInt b = 0; b < l->bodies; b++) {
     const PetscReal work = PetscSqr((PetscReal)LayoutCount(l, b));
     total += work;
@@ -74,7 +71,6 @@ static PetscErrorCode CheckShares(const Case *c) {
   }
   CHECK(PetscAbsReal(mine - total / l->size) <= largest * (1 + 1e-12),
         "%s: shares of the work are equal to within one body: %g of %g on rank 0", c->name, mine, total);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The number that entry k of all is known by. */
@@ -89,7 +85,7 @@ static PetscBool AreKnown(PetscInt n, const PetscScalar a[], PetscInt first, Pet
   return PETSC_TRUE;
 }
 
-static PetscErrorCode CheckGather(const Case *c, int each) {
+static void CheckGather(const Case *c, int each) {
   const Layout l = c->l;
   const PetscInt n = each * l->n, N = each * l->M, first = each * l->first;
   PetscScalar *all, *own, *x;
@@ -97,85 +93,77 @@ static PetscErrorCode CheckGather(const Case *c, int each) {
   PetscReal norm;
   PetscBool good;
   Vec v;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(N, &all, n, &own));
+  TestCall(PetscMalloc2(N, &all, n, &own));
   for (PetscInt k = 0; k < n; k++) own[k] = Known(first + k);
-  PetscCall(LayoutGather(l, each, own, all));
+  TestCall(LayoutGather(l, each, own, all));
   CHECK(AreKnown(N, all, 0, 1), "%s, %d a marker: every rank gathers all", c->name, each);
-  PetscCall(TestMarkerVecs(l, each, &v, NULL));
-  PetscCall(VecGetSize(v, &size));
-  PetscCall(VecGetLocalSize(v, &local));
-  PetscCall(VecNorm(v, NORM_INFINITY, &norm));
+  TestMarkerVecs(l, each, &v, NULL);
+  TestCall(VecGetSize(v, &size));
+  TestCall(VecGetLocalSize(v, &local));
+  TestCall(VecNorm(v, NORM_INFINITY, &norm));
   CHECK(size == N && local == n && norm == 0, "%s, %d a marker: a zero vector, each rank's part its own", c->name,
         each);
-  PetscCall(VecGetArray(v, &x));
-  PetscCall(PetscArraycpy(x, own, n));
-  PetscCall(VecRestoreArray(v, &x));
-  PetscCall(PetscArrayzero(all, N));
-  PetscCall(LayoutGatherVec(l, v, all));
+  TestCall(VecGetArray(v, &x));
+  TestCall(PetscArraycpy(x, own, n));
+  TestCall(VecRestoreArray(v, &x));
+  TestCall(PetscArrayzero(all, N));
+  TestCall(LayoutGatherVec(l, v, all));
   CHECK(AreKnown(N, all, 0, 1), "%s, %d a marker: a vector is gathered in the same order", c->name, each);
   for (PetscInt k = 0; k < N; k++) all[k] = (l->rank + 1) * Known(k);
-  PetscCall(LayoutSum(l, each, all, own));
+  TestCall(LayoutSum(l, each, all, own));
   good = AreKnown(n, own, first, 0.5 * l->size * (l->size + 1)); /* exact: halves of small integers */
   CHECK(good, "%s, %d a marker: owners get the sum over ranks", c->name, each);
-  PetscCall(PetscFree2(all, own));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(all, own));
 }
 
 /* To one rank, whichever it is, and back; other ranks' arrays stay. */
-static PetscErrorCode CheckRoots(const Case *c, int each) {
+static void CheckRoots(const Case *c, int each) {
   const Layout l = c->l;
   const PetscInt n = each * l->n, N = each * l->M, first = each * l->first;
   PetscScalar *all, *own;
   PetscInt wrong = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(N, &all, n, &own));
+  TestCall(PetscMalloc2(N, &all, n, &own));
   for (PetscMPIInt root = 0; root < l->size; root++) {
     for (PetscInt k = 0; k < n; k++) own[k] = Known(first + k);
     for (PetscInt k = 0; k < N; k++) all[k] = -Known(k);
-    PetscCall(LayoutToRank(l, root, each, own, all));
+    TestCall(LayoutToRank(l, root, each, own, all));
     if (!AreKnown(N, all, 0, l->rank == root ? 1 : -1)) wrong++;
     for (PetscInt k = 0; k < N; k++) all[k] = (l->rank == root ? 4 : -9) * Known(k);
-    PetscCall(LayoutFromRank(l, root, each, all, own));
+    TestCall(LayoutFromRank(l, root, each, all, own));
     if (!AreKnown(n, own, first, 4)) wrong++;
     if (!AreKnown(N, all, 0, l->rank == root ? 4 : -9)) wrong++;
   }
   CHECK(!wrong, "%s, %d a marker: to every rank and back", c->name, each);
-  PetscCall(PetscFree2(all, own));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(all, own));
 }
 
-static PetscErrorCode CheckCase(const char name[], PetscInt bodies, Size size) {
+static void CheckCase(const char name[], PetscInt bodies, Size size) {
   Case c = {.start = {0}};
   PetscMPIInt ranks;
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
-  PetscCall(PetscSNPrintf(c.name, sizeof(c.name), "%" PetscInt_FMT " %s bodies on %d ranks", bodies, name, ranks));
+  TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  TestCall(PetscSNPrintf(c.name, sizeof(c.name), "%" PetscInt_FMT " %s bodies on %d ranks", bodies, name, ranks));
   for (PetscInt b = 0; b < bodies; b++) c.start[b + 1] = c.start[b] + size(b, bodies);
-  PetscCall(LayoutCreate(PETSC_COMM_WORLD, bodies, c.start, NULL, &c.l));
+  TestCall(LayoutCreate(PETSC_COMM_WORLD, bodies, c.start, NULL, &c.l));
   CHECK(c.l->bodies == bodies && c.l->M == c.start[bodies] && c.l->size == ranks, "%s: all of them", c.name);
-  PetscCall(CheckRanges(&c));
-  PetscCall(CheckShares(&c));
+  CheckRanges(&c);
+  CheckShares(&c);
   for (int each = 1; each <= 2; each++) {
-    PetscCall(CheckGather(&c, each));
-    PetscCall(CheckRoots(&c, each));
+    CheckGather(&c, each);
+    CheckRoots(&c, each);
   }
-  PetscCall(LayoutDestroy(&c.l));
+  TestCall(LayoutDestroy(&c.l));
   CHECK(!c.l, "%s: destroyed", c.name);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
-  PetscCall(CheckCase("equal", 0, Equal));
-  PetscCall(CheckCase("equal", 1, Equal));
-  PetscCall(CheckCase("growing", 2, Growing));
-  PetscCall(CheckCase("growing", 3, Growing));
-  PetscCall(CheckCase("equal", 5, Equal));
-  PetscCall(CheckCase("large first", 7, LargeFirst));
-  PetscCall(CheckCase("large last", 7, LargeLast));
-  PetscCall(CheckCase("growing", 20, Growing));
-  PetscCall(CheckCase("mixed", 53, Mixed));
-  PetscCall(CheckCase("equal", MOST_BODIES, Equal));
-  PetscFunctionReturn(PETSC_SUCCESS);
+void Facts(void) {
+  CheckCase("equal", 0, Equal);
+  CheckCase("equal", 1, Equal);
+  CheckCase("growing", 2, Growing);
+  CheckCase("growing", 3, Growing);
+  CheckCase("equal", 5, Equal);
+  CheckCase("large first", 7, LargeFirst);
+  CheckCase("large last", 7, LargeLast);
+  CheckCase("growing", 20, Growing);
+  CheckCase("mixed", 53, Mixed);
+  CheckCase("equal", MOST_BODIES, Equal);
 }

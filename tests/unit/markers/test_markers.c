@@ -66,46 +66,42 @@ static PetscReal Sum(Markers m, int comp, const PetscReal X[2]) {
   return sum;
 }
 
-static PetscErrorCode CheckInterpolation(const char name[], TestWorld *t) {
+static void CheckInterpolation(const char name[], TestWorld *t) {
   const Markers m = t->coupling->markers;
   const PetscScalar *X, *got;
   PetscReal error = 0;
   Vec w, U;
-  PetscFunctionBeginUser;
-  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, NULL));
-  PetscCall(TestVecs(t->X, &U, NULL));
-  PetscCall(TestFill(t->fluid->grid, FIELD_U, FIELD_V, VelocityValue, NULL, w));
-  PetscCall(MarkersInterpolate(m, w, U));
-  PetscCall(VecGetArrayRead(t->X, &X));
-  PetscCall(VecGetArrayRead(U, &got));
+  TestFieldVecs(t->fluid->grid->velocity, &w, NULL);
+  TestVecs(t->X, &U, NULL);
+  TestFill(t->fluid->grid, FIELD_U, FIELD_V, VelocityValue, NULL, w);
+  TestCall(MarkersInterpolate(m, w, U));
+  TestCall(VecGetArrayRead(t->X, &X));
+  TestCall(VecGetArrayRead(U, &got));
   for (PetscInt k = 0; k < 2 * t->layout->n; k++)
     error = PetscMax(error, PetscAbsReal(got[k] - Sum(m, k % 2, X + k - k % 2)));
-  PetscCall(VecRestoreArrayRead(U, &got));
-  PetscCall(VecRestoreArrayRead(t->X, &X));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPIU_REAL, MPI_MAX, t->layout->comm));
+  TestCall(VecRestoreArrayRead(U, &got));
+  TestCall(VecRestoreArrayRead(t->X, &X));
+  TestMost(1, &error);
   CHECK(error < TOLERANCE, "%s: every marker's velocity is the sum over all faces, error %.1e", name, error);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* <E w, F> = <w, E^T F>, and two times E^T F comes on top of what is there. */
-static PetscErrorCode CheckTranspose(const char name[], TestWorld *t, unsigned seed) {
+static void CheckTranspose(const char name[], TestWorld *t, unsigned seed) {
   const Markers m = t->coupling->markers;
   PetscReal error;
   Vec w, spread, F;
-  PetscFunctionBeginUser;
-  PetscCall(TestFieldVecs(t->fluid->grid->velocity, &w, &spread, NULL));
-  PetscCall(TestVecs(t->X, &F, NULL));
-  PetscCall(TestRandomVec(seed, w));
-  PetscCall(TestRandomVec(seed + 1, F));
-  PetscCall(TestTransposed(m->E, w, F, &error));
+  TestFieldVecs(t->fluid->grid->velocity, &w, &spread, NULL);
+  TestVecs(t->X, &F, NULL);
+  TestRandomVec(seed, w);
+  TestRandomVec(seed + 1, F);
+  error = TestTransposed(m->E, w, F);
   CHECK(error < TOLERANCE, "%s: E and E^T are transposes, error %.1e", name, error);
-  PetscCall(MatMultTranspose(m->E, F, spread));
-  PetscCall(VecAXPY(spread, 1, w));
-  PetscCall(MarkersSpread(m, 1, F, w)); /* w + E^T F */
-  PetscCall(VecAXPY(w, -1, spread));
-  PetscCall(VecNorm(w, NORM_INFINITY, &error));
+  TestCall(MatMultTranspose(m->E, F, spread));
+  TestCall(VecAXPY(spread, 1, w));
+  TestCall(MarkersSpread(m, 1, F, w)); /* w + E^T F */
+  TestCall(VecAXPY(w, -1, spread));
+  TestCall(VecNorm(w, NORM_INFINITY, &error));
   CHECK(error < TOLERANCE, "%s: spreading adds to what is there, error %.1e", name, error);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How often row j of this rank, or the one above them, has an entry of stencil k, and whether it is the right one. */
@@ -123,13 +119,12 @@ static int Listed(Markers m, PetscInt k, PetscInt j) {
 
 /* The rows' lists have every stencil with a weight there once, in order; each stencil is as long on all ranks together
    as it is. */
-static PetscErrorCode CheckList(const char name[], TestWorld *t) {
+static void CheckList(const char name[], TestWorld *t) {
   const Markers m = t->coupling->markers;
   const Grid g = m->grid;
   PetscInt missed = 0, twice = 0, order = 0, wrong = 0;
   PetscMPIInt *here, *all;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * t->layout->M, &here, 2 * t->layout->M, &all));
+  TestCall(PetscCalloc2(2 * t->layout->M, &here, 2 * t->layout->M, &all));
   for (PetscInt k = 0; k < 2 * t->layout->M; k++) {
     const int c = (int)(k % 2);
     for (PetscInt j = 0; j < g->rows[c] + (g->size > 1 && g->above != MPI_PROC_NULL ? 1 : 0); j++) {
@@ -148,76 +143,68 @@ static PetscErrorCode CheckList(const char name[], TestWorld *t) {
   CHECK(!missed, "%s: no row misses a stencil that has a weight there", name);
   CHECK(!twice, "%s: every stencil is in a row once, with the row of its own that it is", name);
   CHECK(!order, "%s: the stencils of a row are in order", name);
-  PetscCallMPI(MPI_Allreduce(here, all, (PetscMPIInt)(2 * t->layout->M), MPI_INT, MPI_SUM, t->layout->comm));
+  TestCall(MPI_Allreduce(here, all, (PetscMPIInt)(2 * t->layout->M), MPI_INT, MPI_SUM, t->layout->comm));
   for (PetscInt k = 0; k < 2 * t->layout->M; k++) wrong += !g->wall[1] && all[k] != m->stencil[k].n[1];
   CHECK(!wrong, "%s: every row of every stencil is on one rank", name);
-  PetscCall(PetscFree2(here, all));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(here, all));
 }
 
-static PetscErrorCode CheckCase(const char options[], const char vesicles[], const char delta[]) {
+static void CheckCase(const char options[], const char vesicles[], const char delta[]) {
   char all[1024], name[256];
   TestWorld t;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(all, sizeof(all), "%s %s -delta_type %s", options, vesicles, delta));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s %s", strstr(options, "-domain_cells") + 14, delta));
-  PetscCall(TestWorldCreate(all, &t));
+  TestCall(PetscSNPrintf(all, sizeof(all), "%s %s -delta_type %s", options, vesicles, delta));
+  TestCall(PetscSNPrintf(name, sizeof(name), "%s %s", strstr(options, "-domain_cells") + 14, delta));
+  TestWorldCreate(&t, "%s", all);
   CHECK(t.layout->bodies == 5, "%s: five vesicles, %d markers in all", name, (int)t.layout->M);
-  PetscCall(CheckInterpolation(name, &t));
-  for (unsigned k = 0; k < 3; k++) PetscCall(CheckTranspose(name, &t, 31 + 2 * k));
-  PetscCall(CheckList(name, &t));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckInterpolation(name, &t);
+  for (unsigned k = 0; k < 3; k++) CheckTranspose(name, &t, 31 + 2 * k);
+  CheckList(name, &t);
+  TestWorldDestroy(&t);
 }
 
 /* MarkersCheck of marker 0 of one vesicle moved to (x, y): all ranks have the message, which names the vesicle and
    says `what`; what NULL: there is none. */
-static PetscErrorCode CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal y, const char what[]) {
+static void CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal y, const char what[]) {
   char message[PETVES_MAX_MESSAGE], who[64];
   const PetscScalar move[2] = {x, y};
   PetscScalar *a;
   Vec X;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(t->X, &X, NULL));
-  PetscCall(VecCopy(t->X, X));
-  PetscCall(VecGetArray(X, &a));
+  TestVecs(t->X, &X, NULL);
+  TestCall(VecCopy(t->X, X));
+  TestCall(VecGetArray(X, &a));
   for (int c = 0; c < 2 && LayoutOwner(t->layout, vesicle) == t->layout->rank; c++)
     a[2 * LayoutOffset(t->layout, vesicle) + c] = move[c];
-  PetscCall(VecRestoreArray(X, &a));
-  PetscCall(MarkersCheck(t->coupling->markers, t->coupling->markers->layout, X, message));
-  PetscCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT ":", vesicle + 1));
+  TestCall(VecRestoreArray(X, &a));
+  TestCall(MarkersCheck(t->coupling->markers, t->coupling->markers->layout, X, message));
+  TestCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT ":", vesicle + 1));
   CHECK(what ? strstr(message, who) && strstr(message, what) : !*message,
         "a marker of vesicle %d at (%g, %g), known on all ranks: %s", (int)vesicle + 1, x, y,
         *message ? message : "good");
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckMessages(void) {
+static void CheckMessages(void) {
   TestWorld t;
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate("-domain_cells 60,60 -domain_bc_x periodic " INSIDE, &t));
+  TestWorldCreate(&t, "-domain_cells 60,60 -domain_bc_x periodic " INSIDE);
   for (PetscInt v = 0; v < 5; v++) {
-    PetscCall(CheckMessage(&t, v, 0.3, 1 - 2.9 / 30, "y_max"));
-    PetscCall(CheckMessage(&t, v, 0.3, -1 + 2.9 / 30, "y_min"));
-    PetscCall(CheckMessage(&t, v, NAN, 0, "not finite"));
-    PetscCall(CheckMessage(&t, v, 0.3, INFINITY, "not finite"));
-    PetscCall(CheckMessage(&t, v, 5.3, 1 - 3.1 / 30, NULL));
+    CheckMessage(&t, v, 0.3, 1 - 2.9 / 30, "y_max");
+    CheckMessage(&t, v, 0.3, -1 + 2.9 / 30, "y_min");
+    CheckMessage(&t, v, NAN, 0, "not finite");
+    CheckMessage(&t, v, 0.3, INFINITY, "not finite");
+    CheckMessage(&t, v, 5.3, 1 - 3.1 / 30, NULL);
   }
-  PetscCall(TestWorldDestroy(&t));
-  PetscCall(TestWorldCreate("-domain_cells 60,60 -domain_bc_x periodic " AT_WALLS, &t));
+  TestWorldDestroy(&t);
+  TestWorldCreate(&t, "-domain_cells 60,60 -domain_bc_x periodic " AT_WALLS);
   for (PetscInt v = 0; v < 5; v++) {
-    PetscCall(CheckMessage(&t, v, 0.3, 1 - 0.24 / 30, "y_max"));
-    PetscCall(CheckMessage(&t, v, 0.3, 1 - 0.26 / 30, NULL));
+    CheckMessage(&t, v, 0.3, 1 - 0.24 / 30, "y_max");
+    CheckMessage(&t, v, 0.3, 1 - 0.26 / 30, NULL);
   }
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestWorldDestroy(&t);
 }
 
 /* A folded stencil gives flows that are zero at the wall there: y along it exactly, y^2 across it up to where the scale
    ends, in the last cell before FOLD_SCALED. */
-static PetscErrorCode CheckFold(void) {
+static void CheckFold(void) {
   static const char *const kernels[] = {"ib6", "cbs54"};
-  PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     const Kernel *kernel = KernelFind(kernels[k]);
     PetscReal error = 0, wall = 0;
@@ -238,22 +225,19 @@ static PetscErrorCode CheckFold(void) {
     CHECK(error < 1e-13 && PetscAbsReal(wall) < 1e-14, "%s: y along and y^2 across a wall are exact at it, error %.1e",
           kernels[k], error);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const kernels[] = {"ib6", "cbs54"};
-  PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++)
-    PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic -domain_bc_y periodic", ACROSS, kernels[k]));
-  PetscCall(CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -domain_bc_x periodic "
-                      "-domain_bc_y periodic",
-                      ACROSS, "cbs54"));
-  PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic", INSIDE, "cbs54"));
-  PetscCall(CheckCase("-domain_cells 60,60", INSIDE, "cbs54"));
-  for (int k = 0; k < 2; k++) PetscCall(CheckCase("-domain_cells 60,60", AT_WALLS, kernels[k]));
-  PetscCall(CheckCase("-domain_cells 60,60 -domain_bc_x periodic", AT_WALLS, "ib6"));
-  PetscCall(CheckFold());
-  PetscCall(CheckMessages());
-  PetscFunctionReturn(PETSC_SUCCESS);
+    CheckCase("-domain_cells 60,60 -domain_bc_x periodic -domain_bc_y periodic", ACROSS, kernels[k]);
+  CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -domain_bc_x periodic "
+            "-domain_bc_y periodic",
+            ACROSS, "cbs54");
+  CheckCase("-domain_cells 60,60 -domain_bc_x periodic", INSIDE, "cbs54");
+  CheckCase("-domain_cells 60,60", INSIDE, "cbs54");
+  for (int k = 0; k < 2; k++) CheckCase("-domain_cells 60,60", AT_WALLS, kernels[k]);
+  CheckCase("-domain_cells 60,60 -domain_bc_x periodic", AT_WALLS, "ib6");
+  CheckFold();
+  CheckMessages();
 }

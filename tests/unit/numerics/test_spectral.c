@@ -9,14 +9,13 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
 }
 
 /* Exact on trigonometric curves; the first derivative antisymmetric, the fourth symmetric. */
-static PetscErrorCode CheckDerivatives(PetscInt n) {
+static void CheckDerivatives(PetscInt n) {
   static const int powers[] = {1, 2, 4};
   Spectral s;
   PetscReal *x, *y, *a, *b, *c, *d;
   unsigned seed = 3;
-  PetscFunctionBeginUser;
-  PetscCall(SpectralCreate(n, &s));
-  PetscCall(PetscCalloc6(2 * n, &x, 2 * n, &y, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
+  TestCall(SpectralCreate(n, &s));
+  TestCall(PetscCalloc6(2 * n, &x, 2 * n, &y, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
   for (int p = 0; p < 3; p++) {
     PetscReal error = 0, size = 0;
     for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
@@ -50,20 +49,18 @@ static PetscErrorCode CheckDerivatives(PetscInt n) {
   const PetscReal odd = Dot(2 * n, y, a) + Dot(2 * n, x, b), even = Dot(2 * n, y, c) - Dot(2 * n, x, d);
   CHECK(PetscAbsReal(odd) < 1e-12 * n, "%d markers: y.Dx + x.Dy = %.1e for random x, y", (int)n, odd);
   CHECK(PetscAbsReal(even) < 1e-11 * n, "%d markers: y.D4x - x.D4y = %.1e for random x, y", (int)n, even);
-  PetscCall(PetscFree6(x, y, a, b, c, d));
-  PetscCall(SpectralDestroy(&s));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree6(x, y, a, b, c, d));
+  TestCall(SpectralDestroy(&s));
 }
 
 /* What was found for x before must not be given for another x in the same place. */
-static PetscErrorCode CheckKept(PetscInt n) {
+static void CheckKept(PetscInt n) {
   static const int powers[] = {1, 2, 4};
   Spectral s;
   PetscReal *x, *a, *b, *c, *d;
   unsigned seed = 5;
-  PetscFunctionBeginUser;
-  PetscCall(SpectralCreate(n, &s));
-  PetscCall(PetscCalloc5(2 * n, &x, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
+  TestCall(SpectralCreate(n, &s));
+  TestCall(PetscCalloc5(2 * n, &x, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
   for (PetscInt i = 0; i < 2 * n; i++) x[i] = TestRandom(&seed);
   for (int p = 0; p < 3; p++) {
     PetscReal error = 0, size = 0;
@@ -81,20 +78,18 @@ static PetscErrorCode CheckKept(PetscInt n) {
     CHECK(error < 1e-12 * size && size > 0, "%d markers: derivative %d of a sum, error %.1e of %.1e", (int)n, powers[p],
           error, size);
   }
-  PetscCall(PetscFree5(x, a, b, c, d));
-  PetscCall(SpectralDestroy(&s));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree5(x, a, b, c, d));
+  TestCall(SpectralDestroy(&s));
 }
 
 /* A shift of labels: exact on trigonometric curves, alone or in pairs; it keeps sums of squares of an odd number. */
-static PetscErrorCode CheckShift(PetscInt n) {
+static void CheckShift(PetscInt n) {
   const PetscReal phi = 0.37;
   PetscReal *x, *y, error = 0;
   unsigned seed = 9;
   Spectral s;
-  PetscFunctionBeginUser;
-  PetscCall(SpectralCreate(n, &s));
-  PetscCall(PetscCalloc2(2 * n, &x, 2 * n, &y));
+  TestCall(SpectralCreate(n, &s));
+  TestCall(PetscCalloc2(2 * n, &x, 2 * n, &y));
   for (int each = 1; each <= 2; each++)
     for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
       for (PetscInt k = 0; k < each * n; k++)
@@ -114,9 +109,8 @@ static PetscErrorCode CheckShift(PetscInt n) {
   error = 0;
   for (PetscInt k = 0; k < 2 * n; k++) error = PetscMax(error, PetscAbsReal(y[k] - x[k]));
   if (n % 2) CHECK(error < 1e-13, "%d markers: and back, in place, to %.1e", (int)n, error);
-  PetscCall(PetscFree2(x, y));
-  PetscCall(SpectralDestroy(&s));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(x, y));
+  TestCall(SpectralDestroy(&s));
 }
 
 /* A membrane near rest, and random numbers. */
@@ -128,47 +122,40 @@ typedef struct {
   PetscReal *d, *sigma; /* [M]: stretching of U, random tension */
 } Near;
 
-static PetscErrorCode NearCreate(const char derivative[], Near *q) {
-  char options[512];
+static void NearCreate(const char derivative[], Near *q) {
   unsigned seed = 5;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          "-domain_cells 64,64 -domain_box -1,1,-1,1 -vesicle_semi_axes 0.25,0.45 -vesicle_angle 25 "
-                          "-vesicle_bending 0.3 -membrane_derivative %s",
-                          derivative));
-  PetscCall(TestMembraneCreate(options, &q->w));
+  TestMembraneCreate(&q->w,
+                     "-domain_cells 64,64 -domain_box -1,1,-1,1 -vesicle_semi_axes 0.25,0.45 -vesicle_angle 25 "
+                     "-vesicle_bending 0.3 -membrane_derivative %s",
+                     derivative);
   q->derivative = derivative;
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;
-  PetscCall(PetscCalloc4(2 * M, &q->X, 2 * M, &q->U, 2 * M, &q->F, 2 * M, &q->other));
-  PetscCall(PetscCalloc2(M, &q->d, M, &q->sigma));
+  TestCall(PetscCalloc4(2 * M, &q->X, 2 * M, &q->U, 2 * M, &q->F, 2 * M, &q->other));
+  TestCall(PetscCalloc2(M, &q->d, M, &q->sigma));
   for (PetscInt k = 0; k < 2 * M; k++) {
     q->U[k] = TestRandom(&seed);
     q->X[k] = q->w.scene->shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
     q->sigma[k / 2] = TestRandom(&seed);
   }
-  PetscCall(LawCreate(m, 1, 0, 1, &q->law));
+  TestCall(LawCreate(m, 1, 0, 1, &q->law));
   LawPlace(q->law, 1, q->X);
   LawRows(q->law, q->U, q->sigma, q->d);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode NearDestroy(Near *q) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree4(q->X, q->U, q->F, q->other));
-  PetscCall(PetscFree2(q->d, q->sigma));
-  PetscCall(LawDestroy(&q->law));
-  PetscCall(TestMembraneDestroy(&q->w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static void NearDestroy(Near *q) {
+  TestCall(PetscFree4(q->X, q->U, q->F, q->other));
+  TestCall(PetscFree2(q->d, q->sigma));
+  TestCall(LawDestroy(&q->law));
+  TestMembraneDestroy(&q->w);
 }
 
 /* Dm and Dm^T; half the squared edges' rate of change along U is ds SUM d; bending force and bending energy. */
-static PetscErrorCode CheckForces(Near *q) {
+static void CheckForces(Near *q) {
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;
   const PetscReal step = 1e-4;
   PetscReal half[2] = {0, 0}, energy[2], rate, slope;
-  PetscFunctionBeginUser;
   LawForce(q->law, 1, q->sigma, q->F);
   rate = Dot(M, q->sigma, q->d) - Dot(2 * M, q->U, q->F);
   CHECK(PetscAbsReal(rate) < 1e-13 * M, "%s: sigma.(Dm U) - (Dm^T sigma).U = %.1e", q->derivative, rate);
@@ -183,39 +170,35 @@ static PetscErrorCode CheckForces(Near *q) {
   slope = (half[1] - half[0]) / (2 * step);
   CHECK(PetscAbsReal(slope - rate) < 1e-9 * M, "%s: Dm is the rate of the squared edges, %.10f against %.10f",
         q->derivative, rate, slope);
-  PetscCall(PetscArrayzero(q->F, 2 * M));
+  TestCall(PetscArrayzero(q->F, 2 * M));
   MembraneBending(m, -m->bending, q->X, q->F); /* the force, per marker */
   rate = Dot(2 * M, q->F, q->U);
   slope = (energy[1] - energy[0]) / (2 * step);
   CHECK(PetscAbsReal(slope + rate) < 1e-8 * PetscAbsReal(rate),
         "%s: bending force is minus the gradient of the energy, %.8e against %.8e", q->derivative, rate, -slope);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What is left of an area: a uniform shift. */
-static PetscErrorCode CheckArea(Near *q) {
+static void CheckArea(Near *q) {
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;
   PetscReal *X = q->X;
   Measures measures;
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * M; k++) X[k] = 1.004 * q->w.scene->shape.X[k];
   const PetscReal shift = MembraneRestoreArea(m, 0, X);
   MembraneMeasure(m, 0, X, &measures);
   CHECK(PetscAbsReal(measures.area / m->A0[0] - 1) < 1e-12, "%s: area restored to %.1e", q->derivative,
         measures.area / m->A0[0] - 1);
   CHECK(shift < 0 && PetscAbsReal(shift * m->L0[0] / m->A0[0] + 0.008) < 1e-3, "%s: shift %.5f", q->derivative, shift);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The labels' speed of a known motion, a translation, a turn and a shift of labels together; on a circle, where a turn
    is a shift, all of it. */
-static PetscErrorCode CheckTreading(Near *q) {
+static void CheckTreading(Near *q) {
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;
   const PetscReal V = 0.41, omega = -0.7, *X = q->w.scene->shape.X;
   PetscReal *circle = q->other, *U = q->F;
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < M; k++) {
     U[2 * k] = 3 - omega * X[2 * k + 1];
     U[2 * k + 1] = -2 + omega * X[2 * k];
@@ -233,34 +216,28 @@ static PetscErrorCode CheckTreading(Near *q) {
   const PetscReal turn = MembraneTreading(m, 0, circle, U);
   CHECK(PetscAbsReal(turn / omega - 1) < 1e-12, "%s: a circle that turns at %g: labels at %.15f", q->derivative, omega,
         turn);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckMembrane(const char derivative[]) {
+static void CheckMembrane(const char derivative[]) {
   Near q;
-  PetscFunctionBeginUser;
-  PetscCall(NearCreate(derivative, &q));
-  PetscCall(CheckForces(&q));
-  PetscCall(CheckArea(&q));
-  PetscCall(CheckTreading(&q));
-  PetscCall(NearDestroy(&q));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  NearCreate(derivative, &q);
+  CheckForces(&q);
+  CheckArea(&q);
+  CheckTreading(&q);
+  NearDestroy(&q);
 }
 
 /* Few markers on a slender ellipse: the spectral curve through them has its length, its area and equal edges, and its
    symmetry about the first axis. */
-static PetscErrorCode CheckStart(const char *cells) {
-  char options[512];
+static void CheckStart(const char *cells) {
   TestMembrane w;
   Measures measures;
   Curve curve = {.axes = {0.15, 0.6}};
   PetscReal asymmetry = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(options, sizeof(options),
-                          "-domain_cells %s -domain_box -1,1,-1,1 -vesicle_semi_axes 0.15,0.6 -membrane_derivative "
-                          "spectral -delta_type cbs54 -vesicle_spacing 1.5",
-                          cells));
-  PetscCall(TestMembraneCreate(options, &w));
+  TestMembraneCreate(&w,
+                     "-domain_cells %s -domain_box -1,1,-1,1 -vesicle_semi_axes 0.15,0.6 -membrane_derivative "
+                     "spectral -delta_type cbs54 -vesicle_spacing 1.5",
+                     cells);
   const PetscInt M = w.M;
   MembraneMeasure(w.membrane, 0, w.scene->shape.X, &measures);
   for (PetscInt k = 1; k < M; k++) {
@@ -272,22 +249,19 @@ static PetscErrorCode CheckStart(const char *cells) {
         "%d markers: length off by %.1e, area by %.1e, edges by %.1e, symmetry by %.1e", (int)M,
         measures.length / CurveLength(&curve) - 1, measures.area / (PETSC_PI * 0.15 * 0.6) - 1, measures.edge_ratio - 1,
         asymmetry);
-  PetscCall(TestMembraneDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestMembraneDestroy(&w);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const char *const derivatives[] = {"fd", "bending", "spectral"};
-  PetscFunctionBeginUser;
-  PetscCall(CheckStart("24,24"));
-  PetscCall(CheckStart("64,64"));
-  for (PetscInt n = 8; n < 16; n++) PetscCall(CheckDerivatives(n));
-  for (PetscInt n = 44; n < 47; n++) PetscCall(CheckKept(n));
-  PetscCall(CheckDerivatives(35));
-  PetscCall(CheckDerivatives(137));
-  PetscCall(CheckDerivatives(48));
-  PetscCall(CheckShift(35));
-  PetscCall(CheckShift(48));
-  for (int k = 0; k < 3; k++) PetscCall(CheckMembrane(derivatives[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckStart("24,24");
+  CheckStart("64,64");
+  for (PetscInt n = 8; n < 16; n++) CheckDerivatives(n);
+  for (PetscInt n = 44; n < 47; n++) CheckKept(n);
+  CheckDerivatives(35);
+  CheckDerivatives(137);
+  CheckDerivatives(48);
+  CheckShift(35);
+  CheckShift(48);
+  for (int k = 0; k < 3; k++) CheckMembrane(derivatives[k]);
 }

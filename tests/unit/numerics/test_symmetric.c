@@ -5,14 +5,13 @@
 #include "precondition/curvepoints.h"
 
 /* Products with a matrix of n rows, and its inverse. */
-static PetscErrorCode CheckSymmetric(PetscInt n) {
+static void CheckSymmetric(PetscInt n) {
   float *A, *packed, *x, *y;
   PetscReal *copy;
   PetscReal product = 0, inverse = 0;
   PetscBool done;
   unsigned seed = 5;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc5(n * n, &A, n * n, &copy, SymmetricSize(n), &packed, n, &x, n, &y));
+  TestCall(PetscMalloc5(n * n, &A, n * n, &copy, SymmetricSize(n), &packed, n, &x, n, &y));
   for (PetscInt j = 0; j < n; j++) {
     x[j] = (float)TestRandom(&seed);
     for (PetscInt i = 0; i <= j; i++) A[j * n + i] = A[i * n + j] = (float)TestRandom(&seed) + (i == j ? 2 * n : 0);
@@ -25,23 +24,21 @@ static PetscErrorCode CheckSymmetric(PetscInt n) {
     for (PetscInt j = 0; j < n; j++) sum += (PetscReal)A[j * n + i] * x[j];
     product = PetscMax(product, PetscAbsReal(y[i] - sum));
   }
-  PetscCall(SymmetricInvert(n, copy, packed, &done));
+  TestCall(SymmetricInvert(n, copy, packed, &done));
   SymmetricMult(n, packed, y, A);
   for (PetscInt i = 0; i < n; i++) inverse = PetscMax(inverse, PetscAbsReal(A[i] - x[i]));
-  CHECK(product < 1e-6 * n, "%d rows: a product is off by %.1e", (int)n, (double)product);
-  CHECK(done && inverse < 1e-5, "%d rows: its inverse gives back what went in to %.1e", (int)n, (double)inverse);
-  PetscCall(PetscFree5(A, copy, packed, x, y));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CHECK(product < 1e-6 * n, "%d rows: a product is off by %.1e", (int)n, product);
+  CHECK(done && inverse < 1e-5, "%d rows: its inverse gives back what went in to %.1e", (int)n, inverse);
+  TestCall(PetscFree5(A, copy, packed, x, y));
 }
 
 /* Values at points give values at the markers that give them back, and a cosine is a cosine at the markers. */
-static PetscErrorCode CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
+static void CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
   CurvePoints w;
   PetscReal *x, *value, off = 0, wave = 0;
   unsigned seed = 7;
-  PetscFunctionBeginUser;
-  PetscCall(CurvePointsCreate(open, n, points, &w));
-  PetscCall(PetscCalloc2(2 * n, &x, 2 * points, &value));
+  TestCall(CurvePointsCreate(open, n, points, &w));
+  TestCall(PetscCalloc2(2 * n, &x, 2 * points, &value));
   for (PetscInt i = 0; i < points; i++) {
     value[2 * i] = TestRandom(&seed);
     value[2 * i + 1] = points < 3 ? 1 : PetscCosReal(open ? PETSC_PI * (i + 0.5) / points : 2 * PETSC_PI * i / points);
@@ -56,20 +53,17 @@ static PetscErrorCode CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
     const PetscReal angle = open ? PETSC_PI * (k + 0.5) / n : 2 * PETSC_PI * k / n;
     wave = PetscMax(wave, PetscAbsReal(x[2 * k + 1] - (points < 3 ? 1 : PetscCosReal(angle))));
   }
-  CHECK(off < 1e-13, "%d points on %d markers have their values again to %.1e", (int)points, (int)n, (double)off);
-  CHECK(wave < 1e-13, "and the first cosine is interpolated to %.1e", (double)wave);
-  PetscCall(PetscFree2(x, value));
-  PetscCall(CurvePointsDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CHECK(off < 1e-13, "%d points on %d markers have their values again to %.1e", (int)points, (int)n, off);
+  CHECK(wave < 1e-13, "and the first cosine is interpolated to %.1e", wave);
+  TestCall(PetscFree2(x, value));
+  TestCall(CurvePointsDestroy(&w));
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
-  for (PetscInt n = 1; n < 24; n += n < 12 ? 1 : 5) PetscCall(CheckSymmetric(n));
+void Facts(void) {
+  for (PetscInt n = 1; n < 24; n += n < 12 ? 1 : 5) CheckSymmetric(n);
   for (int open = 0; open < 2; open++) {
-    PetscCall(CheckPoints(open, 67, 9));
-    PetscCall(CheckPoints(open, 15, 9));
-    PetscCall(CheckPoints(open, 17, 1));
+    CheckPoints(open, 67, 9);
+    CheckPoints(open, 15, 9);
+    CheckPoints(open, 17, 1);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,51 +38,46 @@ static const OptionDefault dependent[] = {{"-t_integer", IsTrue, "9", NULL, "it 
                                           {NULL}};
 
 /* " -t_reals x,x,..." with 17 digits each. */
-static PetscErrorCode LongList(PetscReal x[MANY], char **text) {
+static void LongList(PetscReal x[MANY], char **text) {
   unsigned state = 3;
   char *end;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(32 * MANY, text));
+  TestCall(PetscMalloc1(32 * MANY, text));
   end = *text + sprintf(*text, "-t_integer 5 -t_truth -t_reals ");
   for (PetscInt k = 0; k < MANY; k++) {
     x[k] = TestRandom(&state);
-    end += sprintf(end, "%s%.17g", k ? "," : "", (double)x[k]);
+    end += sprintf(end, "%s%.17g", k ? "," : "", x[k]);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Every value as text, read again, is the same text. */
-static PetscErrorCode CheckText(const OptionTable *table, Values *values) {
-  PetscFunctionBeginUser;
+static void CheckText(const OptionTable *table, Values *values) {
   for (PetscInt i = 0; i < ROWS; i++) {
     char *text, *again, part[8];
     void *place = (char *)values + rows[i].offset;
     PetscBool same;
-    PetscCall(OptionText(table, values, i, &text));
-    PetscCall(OptionValue(table, values, i, part, sizeof(part)));
+    TestCall(OptionText(table, values, i, &text));
+    TestCall(OptionValue(table, values, i, part, sizeof(part)));
     CHECK(!strncmp(part, text, 7) && strlen(part) == PetscMin(strlen(text), (size_t)7), "%s: its value, cut: %s",
           rows[i].name, part);
-    if (*text) PetscCall(OptionParse(PETSC_COMM_WORLD, &rows[i], text, place));
-    PetscCall(OptionText(table, values, i, &again));
-    PetscCall(PetscStrcmp(text, again, &same));
+    if (*text) TestCall(OptionParse(PETSC_COMM_WORLD, &rows[i], text, place));
+    TestCall(OptionText(table, values, i, &again));
+    TestCall(PetscStrcmp(text, again, &same));
     CHECK(same, "%s: %zu characters read back to the same text", rows[i].name, strlen(text));
-    PetscCall(PetscFree(text));
-    PetscCall(PetscFree(again));
+    TestCall(PetscFree(text));
+    TestCall(PetscFree(again));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckTable(void) {
+static void CheckTable(void) {
   Values v = {0};
   OptionTable table;
   PetscReal x[MANY], off = 0;
   char *text, help[OPTION_HELP];
-  PetscFunctionBeginUser;
-  PetscCall(LongList(x, &text));
-  PetscCall(PetscOptionsClear(NULL));
-  PetscCall(PetscOptionsInsertString(NULL, text));
-  PetscCall(PetscFree(text));
-  PetscCall(OptionsRead(PETSC_COMM_WORLD, "test", ROWS, rows, dependent, &table, &v));
+  LongList(x, &text);
+  TestCall(PetscOptionsClear(NULL));
+  TestCall(PetscOptionsInsertString(NULL, text));
+  TestCall(PetscFree(text));
+  TestCall(OptionsRead(PETSC_COMM_WORLD, "test", ROWS, rows, dependent, &table, &v));
   CHECK(v.real == 0.1 && v.choice == 1 && !strcmp(v.name, "one") && !*v.path && v.ints.n == 1 && v.ints.v[0] == 3,
         "defaults where nothing is given");
   CHECK(v.integer == 5 && v.truth, "the user's values");
@@ -91,44 +86,39 @@ static PetscErrorCode CheckTable(void) {
   CHECK(OptionGiven(&table, "-t_reals") && !OptionGiven(&table, "-t_real") && !OptionGiven(&table, "-t_other"),
         "what is given and what is not");
   CHECK(OptionFind(&table, "-t_path") == 5 && OptionFind(&table, "-t_pat") < 0, "found by the whole name");
-  PetscCall(OptionChoose(&table, &v, "-t_integer", "9"));
-  PetscCall(OptionChoose(&table, &v, "-t_choice", "c"));
+  TestCall(OptionChoose(&table, &v, "-t_integer", "9"));
+  TestCall(OptionChoose(&table, &v, "-t_choice", "c"));
   CHECK(v.integer == 5 && v.choice == 2, "a choice takes the place of a default, not of what is given");
-  PetscCall(OptionsDepend(&table, &v));
+  TestCall(OptionsDepend(&table, &v));
   CHECK(v.integer == 5 && v.choice == 0 && !strcmp(v.name, "two"), "dependent defaults, one after another");
   OptionHelpText(&rows[2], dependent, help);
   CHECK(!strcmp(help, "a choice; a when true"), "help with a dependent default: %s", help);
-  PetscCall(CheckText(&table, &v));
-  PetscCall(OptionsDestroy(&table, &v));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckText(&table, &v);
+  TestCall(OptionsDestroy(&table, &v));
 }
 
 /* A row of vesicles, each where its own pair of numbers puts it. */
-static PetscErrorCode CheckScene(void) {
+static void CheckScene(void) {
   Scene scene;
   char *options, *end;
   PetscReal off = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(64 * VESICLES, &options));
+  TestCall(PetscMalloc1(64 * VESICLES, &options));
   end = options + sprintf(options,
                           "-domain_box 0,%d,0,1 -domain_cells %d,32 -vesicle_semi_axes 0.3,0.2 -vesicle_count %d "
                           "-vesicle_center ",
                           VESICLES, 32 * VESICLES, VESICLES);
   for (int v = 0; v < VESICLES; v++) end += sprintf(end, "%s%g,0.5", v ? "," : "", v + 0.5);
-  PetscCall(TestScene(options, &scene));
-  PetscCall(PetscFree(options));
+  TestScene(&scene, "%s", options);
+  TestCall(PetscFree(options));
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
     const PetscReal *X = scene->shape.X + 2 * scene->shape.start[v]; /* the end of the first semi-axis */
     off = PetscMax(off, PetscAbsReal(X[0] - (v + 0.8)) + PetscAbsReal(X[1] - 0.5));
   }
   CHECK(scene->shape.vesicles == VESICLES && off < 1e-12, "%d vesicles in their places, %.1e", VESICLES, off);
-  PetscCall(SceneDestroy(&scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(SceneDestroy(&scene));
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
-  PetscCall(CheckTable());
-  PetscCall(CheckScene());
-  PetscFunctionReturn(PETSC_SUCCESS);
+void Facts(void) {
+  CheckTable();
+  CheckScene();
 }

@@ -6,43 +6,39 @@
 #include <stdlib.h>
 
 /* Name of a scratch file. */
-static PetscErrorCode Scratch(const char name[], char path[PETSC_MAX_PATH_LEN]) {
+static void Scratch(const char name[], char path[PETSC_MAX_PATH_LEN]) {
   const char *folder = getenv("PETVES_SCRATCH");
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s%s", folder ? folder : "/tmp/", name));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s%s", folder ? folder : "/tmp/", name));
 }
 
 /* A text comes back on every rank, at lengths around those of the attributes that it is cut into. */
-static PetscErrorCode CheckTexts(void) {
+static void CheckTexts(void) {
   const size_t lengths[] = {0, 1, 31999, 32000, 32001, 64000, 200000};
   const int n = sizeof(lengths) / sizeof(lengths[0]);
   char path[PETSC_MAX_PATH_LEN], name[32], *text, *back;
   PetscBool failed;
   H5File file;
-  PetscFunctionBeginUser;
-  PetscCall(Scratch("texts.h5", path));
-  PetscCall(PetscMalloc1(lengths[n - 1] + 1, &text));
+  Scratch("texts.h5", path);
+  TestCall(PetscMalloc1(lengths[n - 1] + 1, &text));
   for (int pass = 0; pass < 2; pass++) {
-    PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, pass ? H5_READ : H5_NEW, &file));
+    TestCall(H5FileOpen(PETSC_COMM_WORLD, path, pass ? H5_READ : H5_NEW, &file));
     for (int k = 0; k < n; k++) {
       for (size_t i = 0; i < lengths[k]; i++) text[i] = (char)('a' + (i * i + 7 * i + (size_t)k) % 26);
       text[lengths[k]] = 0;
-      PetscCall(PetscSNPrintf(name, sizeof(name), "text%d", k));
+      TestCall(PetscSNPrintf(name, sizeof(name), "text%d", k));
       if (!pass) {
         H5PutText(&file, name, text);
         continue;
       }
-      PetscCall(H5GetText(&file, name, &back));
+      TestCall(H5GetText(&file, name, &back));
       CHECK(!strcmp(back, text), "a text of %zu characters", lengths[k]);
-      PetscCall(PetscFree(back));
+      TestCall(PetscFree(back));
     }
-    PetscCall(H5FileFailed(&file, &failed));
+    TestCall(H5FileFailed(&file, &failed));
     CHECK(!failed, "texts %s", pass ? "read" : "written");
     H5FileClose(&file);
   }
-  PetscCall(PetscFree(text));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(text));
 }
 
 /* How often a character is in a text. */
@@ -54,40 +50,37 @@ static PetscInt Count(const char text[], char what) {
 
 /* A row has room for the longest numbers of all its vesicles, and comes back from its text. Of up to 40 vesicles it has
    15 columns each. */
-static PetscErrorCode CheckRows(PetscInt vesicles) {
+static void CheckRows(PetscInt vesicles) {
   const PetscBool own = vesicles > 1 && vesicles <= 40 ? PETSC_TRUE : PETSC_FALSE;
   const PetscInt columns = COLUMN_COUNT + (own ? 15 * vesicles : 0);
   char number[32], *text;
   size_t used = 0;
   const SceneObstacles none = {0};
   Record record;
-  PetscFunctionBeginUser;
-  PetscCall(RecordCreate(vesicles, &none, &(struct _p_Forces){0}, &record));
+  TestCall(RecordCreate(vesicles, &none, &(struct _p_Forces){0}, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
-  PetscCall(PetscSNPrintf(number, sizeof(number), "gap_%d", (int)vesicles));
+  TestCall(PetscSNPrintf(number, sizeof(number), "gap_%d", (int)vesicles));
   CHECK(!strcmp(strrchr(record.header, ',') + 1, own ? number : "normal_stress"), "%d vesicles: the last column",
         (int)vesicles);
-  PetscCall(PetscMalloc1(32 * columns, &text));
+  TestCall(PetscMalloc1(32 * columns, &text));
   for (PetscInt c = 0; c < columns; c++)
-    used += (size_t)snprintf(text + used, 32, "%s%.17g", c ? "," : "", -1.2345678901234567e-300 * (double)(c + 1));
+    used += (size_t)snprintf(text + used, 32, "%s%.17g", c ? "," : "", -1.2345678901234567e-300 * (c + 1));
   RecordParse(&record, text);
   CHECK(!strcmp(record.text, text), "%d vesicles: a row of %zu characters", (int)vesicles, used);
   CHECK(record.last[COLUMN_AREA] == -1.2345678901234567e-300 * (COLUMN_AREA + 1), "%d vesicles: its numbers",
         (int)vesicles);
-  PetscCall(PetscFree(text));
-  PetscCall(RecordDestroy(&record));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(text));
+  TestCall(RecordDestroy(&record));
 }
 
 /* The place of a frame is HDF5's own answer; asked after many frames, and of a file that was opened again. */
-static PetscErrorCode CheckPlaces(void) {
+static void CheckPlaces(void) {
   const PetscInt frames = 300, size[2] = {5, 7}, ask[] = {0, 1, 63, 64, 150, 299};
   char path[PETSC_MAX_PATH_LEN];
   PetscReal values[35], *read = values;
   H5File file;
-  PetscFunctionBeginUser;
-  PetscCall(Scratch("places.h5", path));
-  PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_NEW, &file));
+  Scratch("places.h5", path);
+  TestCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_NEW, &file));
   H5CreateSeries(&file, "/a/one", PETSC_FALSE, 2, size);
   H5CreateSeries(&file, "/a/two", PETSC_FALSE, 1, size);
   for (PetscInt t = 0; t < frames; t++) {
@@ -110,21 +103,18 @@ static PetscErrorCode CheckPlaces(void) {
         same = place != HADDR_UNDEF && H5EntryPlace(&file, "/a/two", ask[k]) == place ? PETSC_TRUE : PETSC_FALSE;
       }
       CHECK(same, "frame %d of %d lies where HDF5 says", (int)ask[k], (int)frames);
-      PetscCall(H5ReadArray(&file, "/a/one", ask[k], 35, read));
+      TestCall(H5ReadArray(&file, "/a/one", ask[k], 35, read));
       CHECK(read[34] == ask[k] + 34 / 64.0, "and frame %d of the other series is as written", (int)ask[k]);
     }
     H5FileClose(&file);
-    if (!pass) PetscCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_READ, &file));
+    if (!pass) TestCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_READ, &file));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
-  PetscCall(CheckTexts());
-  PetscCall(CheckRows(1));
-  PetscCall(CheckRows(40));
-  PetscCall(CheckRows(5000));
-  PetscCall(CheckPlaces());
-  PetscFunctionReturn(PETSC_SUCCESS);
+void Facts(void) {
+  CheckTexts();
+  CheckRows(1);
+  CheckRows(40);
+  CheckRows(5000);
+  CheckPlaces();
 }

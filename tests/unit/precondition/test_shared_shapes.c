@@ -28,9 +28,8 @@ static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], Pets
 }
 
 /* A curve without symmetry is found again wherever it lies. */
-static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
+static void CheckPose(PetscReal angle, PetscInt shift) {
   PetscReal X[2 * N], Y[2 * N], x[2 * N], y[2 * N], z[2 * N], a[RIGIDFIT_SIZES], b[RIGIDFIT_SIZES], most = 0;
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N; k++) {
     const PetscReal t = 2 * PETSC_PI * (PetscReal)k / N;
     Y[2 * k] = cos(t) + 0.1 * cos(2 * t + 1);
@@ -41,34 +40,32 @@ static PetscErrorCode CheckPose(PetscReal angle, PetscInt shift) {
   RigidFitCentre(N, Y, y);
   RigidFit p = RigidFitCurves(N, x, y);
   CHECK((p.shift + shift) % N == 0, "labels shifted by %d are shifted back by %d", (int)shift, (int)p.shift);
-  CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", (double)angle);
-  CHECK(p.distance < 1e-7, "nothing is left, %.1e", (double)p.distance);
+  CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", angle);
+  CHECK(p.distance < 1e-7, "nothing is left, %.1e", p.distance);
   RigidFitInto(&p, 2, N, x, z);
   for (PetscInt k = 0; k < 2 * N; k++) most = PetscMax(most, fabs(z[k] - y[k]));
-  CHECK(most < 1e-13, "the curve is the other one in its frame, %.1e", (double)most);
+  CHECK(most < 1e-13, "the curve is the other one in its frame, %.1e", most);
   RigidFitBack(&p, 2, N, y, z);
   for (PetscInt k = 0; k < 2 * N; k++) most = PetscMax(most, fabs(z[k] - x[k]));
   RigidFitInto(&p, 1, N, x, z);
   RigidFitBack(&p, 1, N, z, z + N);
-  CHECK(most < 1e-13 && !memcmp(z + N, x, N * sizeof(*x)), "there and back, %.1e", (double)most);
+  CHECK(most < 1e-13 && !memcmp(z + N, x, N * sizeof(*x)), "there and back, %.1e", most);
   RigidFitSizes(N, x, a);
   RigidFitSizes(N, y, b);
-  CHECK(RigidFitLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", (double)RigidFitLeast(a, b));
+  CHECK(RigidFitLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", RigidFitLeast(a, b));
   for (PetscInt k = 0; k < N; k++) x[2 * k] += k % 2 ? 0.01 : -0.01;
   p = RigidFitCurves(N, x, y);
   RigidFitSizes(N, x, a);
   CHECK(RigidFitLeast(a, b) > 1e-3 && RigidFitLeast(a, b) <= p.distance,
         "the distance is not less than that of the sizes");
-  CHECK(fabs(p.distance - 0.01) < 5e-4, "a zigzag of 0.01 is left, %.4f", (double)p.distance);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CHECK(fabs(p.distance - 0.01) < 5e-4, "a zigzag of 0.01 is left, %.4f", p.distance);
 }
 
 /* The best shift of random points is that of all sums, one by one. */
-static PetscErrorCode CheckFit(PetscInt n) {
+static void CheckFit(PetscInt n) {
   PetscReal x[2 * N], y[2 * N], most = -1;
   PetscInt best = 0;
   unsigned seed = (unsigned)n;
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * n; k++) {
     x[k] = TestRandom(&seed);
     y[k] = TestRandom(&seed);
@@ -86,30 +83,25 @@ static PetscErrorCode CheckFit(PetscInt n) {
   }
   const RigidFit p = RigidFitCurves(n, x, y);
   CHECK(p.shift == best, "%d points: shifted by %d, the best is %d", (int)n, (int)p.shift, (int)best);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* S is the near field of unbounded fluid, where that is all of the mobility. */
-static PetscErrorCode CheckSelfLayer(PetscInt n) {
-  char options[256];
+static void CheckSelfLayer(PetscInt n) {
   TestWorld t;
   PetscScalar *F, *U;
   PetscReal *S, most = 0, error = 0;
-  PetscFunctionBeginUser;
-  PetscCall(
-      PetscSNPrintf(options, sizeof(options),
-                    "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -delta_type cbs54 "
-                    "-fluid_inertia none -domain_bc_x free -domain_bc_y free -vesicle_markers %d",
-                    (int)n));
-  PetscCall(TestWorldCreate(options, &t));
-  PetscCall(PetscMalloc3(4 * n * n, &S, 2 * n, &F, 2 * n, &U));
-  PetscCall(LayerSelf(&stokeslet, &t.coupling->mobility->near->set, t.membrane->spectral[0], n, t.coupling->markers->X,
-                      NULL, S));
+  TestWorldCreate(&t,
+                  "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -delta_type cbs54 "
+                  "-fluid_inertia none -domain_bc_x free -domain_bc_y free -vesicle_markers %d",
+                  (int)n);
+  TestCall(PetscMalloc3(4 * n * n, &S, 2 * n, &F, 2 * n, &U));
+  TestCall(LayerSelf(&stokeslet, &t.coupling->mobility->near->set, t.membrane->spectral[0], n, t.coupling->markers->X,
+                     NULL, S));
   for (PetscInt i = 0; i < 2 * n; i++) {
-    F[i] = sin(1.0 + 0.3 * (double)i);
+    F[i] = sin(1.0 + 0.3 * i);
     U[i] = 0;
   }
-  PetscCall(NearFieldApply(t.coupling->mobility->near, 1, F, U));
+  TestCall(NearFieldApply(t.coupling->mobility->near, 1, F, U));
   for (PetscInt i = 0; i < 2 * t.layout->n; i++) {
     PetscReal sum = 0;
     for (PetscInt j = 0; j < 2 * n; j++) sum += S[j * 2 * n + i] * F[j];
@@ -117,23 +109,21 @@ static PetscErrorCode CheckSelfLayer(PetscInt n) {
     error = PetscMax(error, fabs(U[i] - sum));
   }
   CHECK(error <= 1e-12 * most, "%d markers: S of one curve is the near field's", (int)n);
-  PetscCall(PetscFree3(S, F, U));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree3(S, F, U));
+  TestWorldDestroy(&t);
 }
 
 /* r_V and r_s of V and sigma of one vesicle in unbounded fluid: V + S F, Dm V/h^2, F = Dm^T sigma + (c_b ds/a0) D4 V.
  */
-static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const PetscScalar sigma[],
-                               PetscScalar U[], PetscScalar s[]) {
+static void Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const PetscScalar sigma[], PetscScalar U[],
+                     PetscScalar s[]) {
   const Membrane m = t->membrane;
   const PetscReal *X = t->coupling->markers->X + 2 * t->layout->start[v];
   PetscReal *S, F[2 * N] = {0};
   MembraneLaw law;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(4 * N * N, &S));
-  PetscCall(LayerSelf(&stokeslet, &t->coupling->mobility->near->set, m->spectral[v], N, X, NULL, S));
-  PetscCall(LawCreate(m, t->fluid->grid->h, v, v + 1, &law));
+  TestCall(PetscMalloc1(4 * N * N, &S));
+  TestCall(LayerSelf(&stokeslet, &t->coupling->mobility->near->set, m->spectral[v], N, X, NULL, S));
+  TestCall(LawCreate(m, t->fluid->grid->h, v, v + 1, &law));
   LawPlace(law, 1, X);
   LawForce(law, 1, sigma, F);
   MembraneVesicleBending(m, v, m->bending / t->fluid->a0, V, F);
@@ -142,148 +132,129 @@ static PetscErrorCode Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], 
     for (PetscInt j = 0; j < 2 * N; j++) U[i] += S[j * 2 * N + i] * F[j];
   }
   LawRows(law, V, sigma, s);
-  PetscCall(LawDestroy(&law));
-  PetscCall(PetscFree(S));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(LawDestroy(&law));
+  TestCall(PetscFree(S));
 }
 
 /* All vesicles take the first one's shape, and each gets its own solution by it. */
-static PetscErrorCode CheckSolve(void) {
+static void CheckSolve(void) {
   TestWorld t;
   SharedShapes s;
   PetscBool failed;
   PetscScalar V[VESICLES * 2 * N], sigma[VESICLES * N], U[VESICLES * 2 * N], r[VESICLES * N];
   PetscReal error = 0, most = 0;
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(
-      OPTIONS "-domain_cells 64,32 -domain_bc_x free -domain_bc_y free -vesicle_semi_axes 0.4,0.8", &t));
-  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
-  PetscCall(SharedShapesFollow(s, &failed));
+  TestWorldCreate(&t, OPTIONS "-domain_cells 64,32 -domain_bc_x free -domain_bc_y free -vesicle_semi_axes 0.4,0.8");
+  TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
+  TestCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->count == 1, "equal vesicles have one shape, %d", (int)s->count);
   CHECK(!s->coarse, "no coarse grid in unbounded fluid");
   const PetscInt own = t.layout->end - t.layout->own;
-  for (PetscInt i = 0; i < own * 2 * N; i++) V[i] = sin(1.0 + 0.37 * (double)i);
-  for (PetscInt i = 0; i < own * N; i++) sigma[i] = cos(0.2 * (double)i * (double)i);
+  for (PetscInt i = 0; i < own * 2 * N; i++) V[i] = sin(1.0 + 0.37 * i);
+  for (PetscInt i = 0; i < own * N; i++) sigma[i] = cos(0.2 * i * i);
   for (PetscInt v = 0; v < own; v++)
-    PetscCall(Multiply(&t, t.layout->own + v, V + 2 * N * v, sigma + N * v, U + 2 * N * v, r + N * v));
-  PetscCall(SharedShapesSolve(s, U, r));
+    Multiply(&t, t.layout->own + v, V + 2 * N * v, sigma + N * v, U + 2 * N * v, r + N * v);
+  TestCall(SharedShapesSolve(s, U, r));
   for (PetscInt i = 0; i < own * 2 * N; i++) {
     error = PetscMax(error, fabs(U[i] - V[i]));
     most = PetscMax(most, fabs(V[i]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
-  CHECK(error < 1e-6 * most, "each vesicle's V comes back, %.1e", (double)(error / most));
-  PetscCall(SharedShapesDestroy(&s));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestMost(1, &error);
+  CHECK(error < 1e-6 * most, "each vesicle's V comes back, %.1e", (error / most));
+  TestCall(SharedShapesDestroy(&s));
+  TestWorldDestroy(&t);
 }
 
 /* r_V and r_s of V and sigma in a box with walls, where velocity comes from the grid and the near field. */
-static PetscErrorCode MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) {
+static void MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) {
   const PetscScalar *f;
   PetscScalar *u;
   Vec F;
-  Stokes stokes;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(V, &F, NULL));
-  PetscCall(StokesCreate(t->fluid, &stokes));
-  PetscCall(VecGetArrayRead(V, &f));
-  PetscCall(VecGetArray(F, &u));
-  PetscCall(ForcesRate(t->coupling->forces, 1 / t->fluid->a0, f, u));
-  PetscCall(VecRestoreArrayRead(V, &f));
-  PetscCall(VecGetArrayRead(sigma, &f));
+  TestVecs(V, &F, NULL);
+  TestCall(VecGetArrayRead(V, &f));
+  TestCall(VecGetArray(F, &u));
+  TestCall(ForcesRate(t->coupling->forces, 1 / t->fluid->a0, f, u));
+  TestCall(VecRestoreArrayRead(V, &f));
+  TestCall(VecGetArrayRead(sigma, &f));
   LawForce(t->coupling->law, 1, f, u);
-  PetscCall(VecRestoreArrayRead(sigma, &f));
-  PetscCall(VecRestoreArray(F, &u));
-  PetscCall(TestWorldRespond(t, stokes, PETSC_TRUE, F, U));
-  PetscCall(VecAXPY(U, 1, V));
-  PetscCall(CouplingStretching(t->coupling, V, s));
-  PetscCall(StokesDestroy(&stokes));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArrayRead(sigma, &f));
+  TestCall(VecRestoreArray(F, &u));
+  TestWorldRespond(t, PETSC_TRUE, F, U);
+  TestCall(VecAXPY(U, 1, V));
+  TestCall(CouplingStretching(t->coupling, V, s));
 }
 
 /* Vesicles next to one another: the shapes with what vesicles do to one another, coarse grid and near
    markers, give V back but for some per cent. */
-static PetscErrorCode CheckCross(void) {
+static void CheckCross(void) {
   TestWorld t;
   SharedShapes s;
   PetscBool failed;
   Vec V, sigma, U, r;
   PetscScalar *v, *g;
-  PetscReal norm, error;
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(OPTIONS CLOSE, &t));
-  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
-  PetscCall(SharedShapesFollow(s, &failed));
+  TestWorldCreate(&t, OPTIONS CLOSE);
+  TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
+  TestCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->cross, "a coarse grid in a channel");
-  PetscCall(TestMarkerVecs(t.layout, 2, &V, &U, NULL));
-  PetscCall(TestMarkerVecs(t.layout, 1, &sigma, &r, NULL));
-  PetscCall(VecGetArray(V, &v));
-  PetscCall(VecGetArray(sigma, &g));
+  TestMarkerVecs(t.layout, 2, &V, &U, NULL);
+  TestMarkerVecs(t.layout, 1, &sigma, &r, NULL);
+  TestCall(VecGetArray(V, &v));
+  TestCall(VecGetArray(sigma, &g));
   for (PetscInt k = 0; k < t.layout->n; k++) {
     const PetscReal at = 2 * PETSC_PI * (PetscReal)((t.layout->first + k) % N) / N;
     v[2 * k] = cos(2 * at);
     v[2 * k + 1] = sin(at) + cos(3 * at);
     g[k] = cos(2 * at + 1);
   }
-  PetscCall(VecRestoreArray(sigma, &g));
-  PetscCall(VecRestoreArray(V, &v));
-  PetscCall(MultiplyAll(&t, V, sigma, U, r));
-  PetscCall(VecGetArray(U, &v));
-  PetscCall(VecGetArray(r, &g));
-  PetscCall(SharedShapesSolve(s, v, g));
-  PetscCall(VecRestoreArray(r, &g));
-  PetscCall(VecRestoreArray(U, &v));
-  PetscCall(VecNorm(V, NORM_2, &norm));
-  PetscCall(VecAXPY(U, -1, V));
-  PetscCall(VecNorm(U, NORM_2, &error));
-  CHECK(error < 0.05 * norm, "V comes back, %.3f of it is left", (double)(error / norm));
-  PetscCall(SharedShapesDestroy(&s));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArray(sigma, &g));
+  TestCall(VecRestoreArray(V, &v));
+  MultiplyAll(&t, V, sigma, U, r);
+  TestCall(VecGetArray(U, &v));
+  TestCall(VecGetArray(r, &g));
+  TestCall(SharedShapesSolve(s, v, g));
+  TestCall(VecRestoreArray(r, &g));
+  TestCall(VecRestoreArray(U, &v));
+  const PetscReal error = TestApart(NORM_2, U, V);
+  CHECK(error < 0.05, "V comes back, %.3f of it is left", error);
+  TestCall(SharedShapesDestroy(&s));
+  TestWorldDestroy(&t);
 }
 
 /* The memory makes the same shapes again, and is refused where it is of other vesicles. */
-static PetscErrorCode CheckMemory(void) {
+static void CheckMemory(void) {
   TestWorld t;
   SharedShapes s, again;
   PetscBool failed, valid;
   PetscReal *memory, *second;
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(OPTIONS "-domain_cells 64,32 -domain_bc_x periodic -vesicle_reduced_area "
-                                    "0.7,0.8,0.9,0.7,0.8,0.9,0.7 -vesicle_area 1",
-                            &t));
+  TestWorldCreate(&t, OPTIONS "-domain_cells 64,32 -domain_bc_x periodic -vesicle_reduced_area "
+                              "0.7,0.8,0.9,0.7,0.8,0.9,0.7 -vesicle_area 1");
   const PetscInt size = SharedShapesMemorySize(t.layout);
-  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
-  PetscCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &again));
-  PetscCall(SharedShapesFollow(s, &failed));
+  TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
+  TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &again));
+  TestCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->count == 3, "three kinds of vesicles have three shapes, %d", (int)s->count);
-  PetscCall(PetscMalloc2(size, &memory, size, &second));
+  TestCall(PetscMalloc2(size, &memory, size, &second));
   SharedShapesGetMemory(s, memory);
-  PetscCall(SharedShapesSetMemory(again, memory, &valid));
-  PetscCall(SharedShapesFollow(again, &failed));
+  TestCall(SharedShapesSetMemory(again, memory, &valid));
+  TestCall(SharedShapesFollow(again, &failed));
   SharedShapesGetMemory(again, second);
   CHECK(valid && !memcmp(memory, second, (size_t)size * sizeof(PetscReal)), "the memory makes the same shapes again");
   memory[1 + 2 * t.layout->M + 1] = 0; /* vesicle 1 after vesicle 0, whose edges are longer */
-  PetscCall(SharedShapesSetMemory(again, memory, &valid));
+  TestCall(SharedShapesSetMemory(again, memory, &valid));
   CHECK(!valid, "a memory of other vesicles is refused");
-  PetscCall(PetscFree2(memory, second));
-  PetscCall(SharedShapesDestroy(&again));
-  PetscCall(SharedShapesDestroy(&s));
-  PetscCall(TestWorldDestroy(&t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(memory, second));
+  TestCall(SharedShapesDestroy(&again));
+  TestCall(SharedShapesDestroy(&s));
+  TestWorldDestroy(&t);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   const PetscReal angle[] = {2.1, -0.3, 0, 3.1};
   const PetscInt shift[] = {17, 44, 0, 1};
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 4; k++) PetscCall(CheckPose(angle[k], shift[k]));
-  for (PetscInt n = 8; n < 16; n++) PetscCall(CheckFit(n));
-  PetscCall(CheckSelfLayer(45));
-  PetscCall(CheckSelfLayer(44));
-  PetscCall(CheckSolve());
-  PetscCall(CheckCross());
-  PetscCall(CheckMemory());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 4; k++) CheckPose(angle[k], shift[k]);
+  for (PetscInt n = 8; n < 16; n++) CheckFit(n);
+  CheckSelfLayer(45);
+  CheckSelfLayer(44);
+  CheckSolve();
+  CheckCross();
+  CheckMemory();
 }

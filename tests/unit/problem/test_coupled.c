@@ -10,173 +10,156 @@ typedef struct {
   PetscInt its;             /* of the last solve */
 } Problem;
 
-static PetscErrorCode ProblemCreate(const char options[], PetscReal a0, Problem *q) {
-  PetscFunctionBeginUser;
-  PetscCall(TestWorldCreate(options, &q->t));
-  PetscCall(TestWorldPlace(a0, &q->t));
-  PetscCall(CoupledSolverCreate(q->t.scene, q->t.coupling, &q->s));
-  PetscCall(TestFieldVecs(q->t.fluid->grid->velocity, &q->f, &q->w, NULL));
-  PetscCall(TestFieldVecs(q->t.fluid->grid->da[FIELD_P], &q->p, NULL));
-  PetscCall(TestMarkerVecs(q->t.layout, 1, &q->g, &q->sigma, NULL));
-  PetscCall(TestVecs(q->t.X, &q->V, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static void ProblemCreate(const char options[], PetscReal a0, Problem *q) {
+  TestWorldCreate(&q->t, "%s", options);
+  TestWorldPlace(a0, &q->t);
+  TestCall(CoupledSolverCreate(q->t.scene, q->t.coupling, &q->s));
+  TestFieldVecs(q->t.fluid->grid->velocity, &q->f, &q->w, NULL);
+  TestFieldVecs(q->t.fluid->grid->da[FIELD_P], &q->p, NULL);
+  TestMarkerVecs(q->t.layout, 1, &q->g, &q->sigma, NULL);
+  TestVecs(q->t.X, &q->V, NULL);
 }
 
-static PetscErrorCode ProblemDestroy(Problem *q) {
-  PetscFunctionBeginUser;
-  PetscCall(CoupledSolverDestroy(&q->s));
-  PetscCall(TestWorldDestroy(&q->t));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static void ProblemDestroy(Problem *q) {
+  TestCall(CoupledSolverDestroy(&q->s));
+  TestWorldDestroy(&q->t);
 }
 
 /* A random problem solved, from a zero or a random guess; f stays what it was. */
-static PetscErrorCode SolveProblem(const char name[], Problem *q, PetscBool random) {
+static void SolveProblem(const char name[], Problem *q, PetscBool random) {
   SolveReport report;
   Forcing r;
   Vec k;
-  PetscFunctionBeginUser;
-  PetscCall(TestRandomVec(11, q->f));
-  PetscCall(TestRandomVec(12, q->g));
-  PetscCall(VecSet(q->w, 0));
-  PetscCall(VecSet(q->sigma, 0));
+  TestRandomVec(11, q->f);
+  TestRandomVec(12, q->g);
+  TestCall(VecSet(q->w, 0));
+  TestCall(VecSet(q->sigma, 0));
   if (random) {
-    PetscCall(TestRandomVec(13, q->w));
-    PetscCall(TestRandomVec(14, q->sigma));
-    PetscCall(VecScale(q->w, 0.01)); /* a guess far larger than the solution would leave its rounding */
-    PetscCall(VecScale(q->sigma, 0.01));
+    TestRandomVec(13, q->w);
+    TestRandomVec(14, q->sigma);
+    TestCall(VecScale(q->w, 0.01)); /* a guess far larger than the solution would leave its rounding */
+    TestCall(VecScale(q->sigma, 0.01));
   }
-  PetscCall(MarkersInterpolate(q->t.coupling->markers, q->w, q->V));
-  PetscCall(ForcingCreate(q->t.fluid->grid, PETSC_FALSE, &r));
-  PetscCall(ForcingAdd(&r, q->f));
-  PetscCall(TestVecs(q->V, &k, NULL));
-  if (q->t.fluid->grid->free) PetscCall(TestRandomVec(16, k)); /* there a force on the grid does nothing */
+  TestCall(MarkersInterpolate(q->t.coupling->markers, q->w, q->V));
+  TestCall(ForcingCreate(q->t.fluid->grid, PETSC_FALSE, &r));
+  TestCall(ForcingAdd(&r, q->f));
+  TestVecs(q->V, &k, NULL);
+  if (q->t.fluid->grid->free) TestRandomVec(16, k); /* there a force on the grid does nothing */
   const CoupledProblem problem = {.known.f = &r, .g = q->g, .k = k, .sigma = q->sigma, .V = q->V};
-  PetscCall(CoupledSolverSolve(q->s, &problem, &report));
-  PetscCall(MobilityFields(q->t.coupling->mobility, &r, q->w, q->p));
+  TestCall(CoupledSolverSolve(q->s, &problem, &report));
+  TestCall(MobilityFields(q->t.coupling->mobility, &r, q->w, q->p));
   CHECK(report.why > 0, "%s: converged in %d iterations", name, (int)report.its);
   q->its = report.its;
-  PetscCall(ForcingDestroy(&r));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(ForcingDestroy(&r));
 }
 
 /* d times the scale of each edge's row: what a residual of S^T u = g counts in the solver's norm. */
-static PetscErrorCode ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
+static void ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
   PetscScalar *a;
   Vec scaled;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(q->s->x, &scaled, NULL));
-  PetscCall(UnknownsPack(q->s->unknowns, NULL, NULL, d, scaled));
-  PetscCall(VecGetArray(scaled, &a));
+  TestVecs(q->s->x, &scaled, NULL);
+  TestCall(UnknownsPack(q->s->unknowns, NULL, NULL, d, scaled));
+  TestCall(VecGetArray(scaled, &a));
   UnknownsScale(q->s->unknowns, PETSC_FALSE, a);
-  PetscCall(VecRestoreArray(scaled, &a));
-  PetscCall(VecNorm(scaled, NORM_2, norm));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(VecRestoreArray(scaled, &a));
+  TestCall(VecNorm(scaled, NORM_2, norm));
 }
 
 /* The solution put back into H w + B E w/a0 + G p + S sigma = f, G^T w = 0, S^T w = g by the operators that split uses;
    the third row scaled. */
-static PetscErrorCode CheckSolution(const char name[], Problem *q, PetscBool random) {
+static void CheckSolution(const char name[], Problem *q, PetscBool random) {
   const Fluid f = q->t.fluid;
   const Coupling c = q->t.coupling;
   PetscReal row[3], reference[2];
   Vec r, div, U, stretching;
-  PetscFunctionBeginUser;
-  PetscCall(SolveProblem(name, q, random));
-  PetscCall(TestVecs(q->f, &r, NULL));
-  PetscCall(TestVecs(q->p, &div, NULL));
-  PetscCall(TestVecs(q->t.X, &U, NULL));
-  PetscCall(TestVecs(q->g, &stretching, NULL));
-  PetscCall(MatMult(f->H, q->w, r));
-  PetscCall(MatMult(c->markers->E, q->w, U));
-  PetscCall(CouplingSpreadBending(c, 1 / f->a0, U, r));
-  PetscCall(GridGradient(f->grid, 1, q->p, PETSC_TRUE, r));
-  PetscCall(CouplingSpreadTension(c, 1, q->sigma, r));
-  PetscCall(VecAXPY(r, -1, q->f));
-  PetscCall(VecNorm(r, NORM_2, &row[0]));
-  PetscCall(GridGradientTranspose(f->grid, 1, q->w, div));
-  PetscCall(VecNorm(div, NORM_2, &row[1]));
-  PetscCall(MatMultTranspose(c->S, q->w, stretching));
-  PetscCall(VecAXPY(stretching, -1, q->g));
-  PetscCall(ScaledNorm(q, stretching, &row[2]));
-  PetscCall(VecNorm(q->f, NORM_2, &reference[0]));
-  PetscCall(ScaledNorm(q, q->g, &reference[1]));
+  SolveProblem(name, q, random);
+  TestVecs(q->f, &r, NULL);
+  TestVecs(q->p, &div, NULL);
+  TestVecs(q->t.X, &U, NULL);
+  TestVecs(q->g, &stretching, NULL);
+  TestCall(MatMult(f->H, q->w, r));
+  TestCall(MatMult(c->markers->E, q->w, U));
+  TestCall(CouplingSpreadBending(c, 1 / f->a0, U, r));
+  TestCall(GridGradient(f->grid, 1, q->p, PETSC_TRUE, r));
+  TestCall(CouplingSpreadTension(c, 1, q->sigma, r));
+  TestCall(VecAXPY(r, -1, q->f));
+  TestCall(VecNorm(r, NORM_2, &row[0]));
+  TestCall(GridGradientTranspose(f->grid, 1, q->w, div));
+  TestCall(VecNorm(div, NORM_2, &row[1]));
+  TestCall(MatMultTranspose(c->S, q->w, stretching));
+  TestCall(VecAXPY(stretching, -1, q->g));
+  ScaledNorm(q, stretching, &row[2]);
+  TestCall(VecNorm(q->f, NORM_2, &reference[0]));
+  ScaledNorm(q, q->g, &reference[1]);
   const PetscReal size = PetscSqrtReal(PetscSqr(reference[0]) + PetscSqr(reference[1]));
   for (int k = 0; k < 3; k++) /* the solver's residual is V - E u; in row 1 it counts with the bending's stiffness */
     CHECK(row[k] < (k ? 3e-12 : 2e-11) * size, "%s: row %d of the solution put back, %.1e", name, k + 1, row[k] / size);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* B E: <B E w, v> = <w, B E v>, and <B E w, w> >= 0. */
-static PetscErrorCode CheckBending(const char name[], Problem *q) {
+static void CheckBending(const char name[], Problem *q) {
   const Coupling c = q->t.coupling;
   PetscReal energy, one, two;
   Vec x[2], y[2], U;
-  PetscFunctionBeginUser;
-  PetscCall(TestVecs(q->t.X, &U, NULL));
+  TestVecs(q->t.X, &U, NULL);
   for (int k = 0; k < 2; k++) {
-    PetscCall(TestVecs(q->f, &x[k], &y[k], NULL));
-    PetscCall(TestRandomVec(21 + (unsigned)k, x[k]));
-    PetscCall(MatMult(c->markers->E, x[k], U));
-    PetscCall(MatMult(c->B, U, y[k]));
+    TestVecs(q->f, &x[k], &y[k], NULL);
+    TestRandomVec(21 + (unsigned)k, x[k]);
+    TestCall(MatMult(c->markers->E, x[k], U));
+    TestCall(MatMult(c->B, U, y[k]));
   }
-  PetscCall(VecDot(y[0], x[0], &energy));
-  PetscCall(VecDot(y[0], x[1], &one));
-  PetscCall(VecDot(y[1], x[0], &two));
+  TestCall(VecDot(y[0], x[0], &energy));
+  TestCall(VecDot(y[0], x[1], &one));
+  TestCall(VecDot(y[1], x[0], &two));
   CHECK(PetscAbsReal(one - two) < 1e-12 * PetscAbsReal(one), "%s: B E is symmetric, %.1e", name,
         PetscAbsReal(one - two) / PetscAbsReal(one));
   CHECK(energy > 0, "%s: B E only takes energy, %.3e", name, energy);
   for (int k = 0; k < 2; k++) {}
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Largest difference of a column of Mob from the part U of one vesicle's markers, on every rank. */
-static PetscErrorCode ColumnError(Layout l, PetscInt v, Vec U, const PetscReal column[], PetscReal *error) {
+static void ColumnError(Layout l, PetscInt v, Vec U, const PetscReal column[], PetscReal *error) {
   PetscScalar *all;
-  PetscFunctionBeginUser;
   *error = 0;
-  PetscCall(PetscMalloc1(2 * l->M, &all));
-  PetscCall(LayoutGatherVec(l, U, all));
+  TestCall(PetscMalloc1(2 * l->M, &all));
+  TestCall(LayoutGatherVec(l, U, all));
   for (PetscInt row = 0; row < 2 * LayoutCount(l, v); row++)
     *error = PetscMax(*error, PetscAbsReal(column[row] - all[2 * l->start[v] + row]));
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree(all));
 }
 
 /* Largest |Mob - E A^-1 E^T| of one vesicle, one Stokes solve a column. */
-static PetscErrorCode MobilityError(Problem *q, PetscInt v, const PetscReal Mob[], PetscReal *error) {
+static void MobilityError(Problem *q, PetscInt v, const PetscReal Mob[], PetscReal *error) {
   const Markers m = q->t.coupling->markers;
   const PetscInt first = 2 * q->t.layout->start[v], n = 2 * LayoutCount(q->t.layout, v);
   Stokes stokes;
   Vec F, r;
-  PetscFunctionBeginUser;
   *error = 0;
-  PetscCall(StokesCreate(q->t.fluid, &stokes));
-  PetscCall(TestVecs(q->t.X, &F, NULL));
-  PetscCall(TestVecs(q->f, &r, NULL));
+  TestCall(StokesCreate(q->t.fluid, &stokes));
+  TestVecs(q->t.X, &F, NULL);
+  TestVecs(q->f, &r, NULL);
   for (PetscInt column = 0; column < n; column++) {
     PetscReal off;
-    PetscCall(TestUnit(first + column, F));
-    PetscCall(MatMultTranspose(m->E, F, r));
-    PetscCall(StokesProject(stokes, r, NULL, r, q->p)); /* the table knows no walls */
-    PetscCall(MatMult(m->E, r, F));
-    PetscCall(ColumnError(q->t.layout, v, F, Mob + column * n, &off));
+    TestUnit(first + column, F);
+    TestCall(MatMultTranspose(m->E, F, r));
+    TestCall(StokesProject(stokes, r, NULL, r, q->p)); /* the table knows no walls */
+    TestCall(MatMult(m->E, r, F));
+    ColumnError(q->t.layout, v, F, Mob + column * n, &off);
     *error = PetscMax(*error, off);
   }
-  PetscCall(StokesDestroy(&stokes));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(StokesDestroy(&stokes));
 }
 
 /* Mob of one vesicle against E A^-1 E^T: largest difference over the largest entry; and that shares of it add up. */
-static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
+static void CheckMobility(const char name[], Problem *q, PetscInt v) {
   const MeanMobility mobility = q->s->preconditioner->mobility;
   const PetscInt n = 2 * LayoutCount(q->t.layout, v);
   const MarkerRange own = {q->t.layout->start[v], n / 2};
   PetscReal *Mob, *part, most = 0, error, asymmetry = 0, apart = 0;
-  PetscFunctionBeginUser;
-  PetscCall(MeanMobilitySetUp(mobility, q->t.fluid->alpha));
-  PetscCall(PetscMalloc2(n * n, &Mob, n * n, &part));
-  PetscCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
-  PetscCall(MobilityError(q, v, Mob, &error));
+  TestCall(MeanMobilitySetUp(mobility, q->t.fluid->alpha));
+  TestCall(PetscMalloc2(n * n, &Mob, n * n, &part));
+  TestCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
+  MobilityError(q, v, Mob, &error);
   for (PetscInt c = 0; c < n; c++)
     for (PetscInt r = 0; r < n; r++) {
       asymmetry = PetscMax(asymmetry, PetscAbsReal(Mob[c * n + r] - Mob[r * n + c]));
@@ -185,90 +168,81 @@ static PetscErrorCode CheckMobility(const char name[], Problem *q, PetscInt v) {
   CHECK(error < 1e-11 * most, "%s: Mob is E A^-1 E^T, %.1e", name, error / most);
   CHECK(asymmetry < 1e-11 * most, "%s: Mob is symmetric, %.1e", name, asymmetry / most);
   for (PetscInt p = 0; p < 3; p++) {
-    PetscCall(MeanMobilityAssemble(mobility, &own, &own, p, 3, part));
+    TestCall(MeanMobilityAssemble(mobility, &own, &own, p, 3, part));
     for (PetscInt k = 0; k < n * n; k++) Mob[k] -= part[k];
   }
   for (PetscInt k = 0; k < n * n; k++) apart = PetscMax(apart, PetscAbsReal(Mob[k]));
   CHECK(apart == 0, "%s: three shares of Mob add up to it, %.1e", name, apart / most);
-  PetscCall(PetscFree2(Mob, part));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscFree2(Mob, part));
 }
 
 /* With the near field: C is in the equations and in the preconditioner alike, and Mob of markers 14 h and more apart is
    smooth and interpolated. Largest difference from E A^-1 E^T over the largest entry, and iterations to 1e-8. */
-static PetscErrorCode CheckNearField(const char box[], PetscReal a0, PetscReal most_error, PetscInt most_its) {
+static void CheckNearField(const char box[], PetscReal a0, PetscReal most_error, PetscInt most_its) {
   char options[512];
   Problem q;
-  PetscFunctionBeginUser;
-  PetscCall(
+  TestCall(
       PetscSNPrintf(options, sizeof(options),
                     "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -vesicle_markers 45 "
                     "-domain_cells 64,64 -vesicle_semi_axes 0.3,0.6 -vesicle_bending 10 -coupled_ksp_rtol 1e-8 %s",
                     box));
-  PetscCall(ProblemCreate(options, a0, &q));
-  PetscCall(SolveProblem(box, &q, PETSC_FALSE));
-  CHECK(q.its <= most_its, "%s, a0 = %g: %d iterations", box, (double)a0, (int)q.its);
+  ProblemCreate(options, a0, &q);
+  SolveProblem(box, &q, PETSC_FALSE);
+  CHECK(q.its <= most_its, "%s, a0 = %g: %d iterations", box, a0, (int)q.its);
   if (q.s->preconditioner->mobility && !q.t.fluid->grid->free) {
     const PetscInt n = 2 * q.t.layout->M;
     const MarkerRange own = {0, n / 2};
     PetscReal *Mob, error, most = 0;
-    PetscCall(PetscMalloc1(n * n, &Mob));
-    PetscCall(MeanMobilityAssemble(q.s->preconditioner->mobility, &own, &own, 0, 1, Mob));
-    PetscCall(MobilityError(&q, 0, Mob, &error));
+    TestCall(PetscMalloc1(n * n, &Mob));
+    TestCall(MeanMobilityAssemble(q.s->preconditioner->mobility, &own, &own, 0, 1, Mob));
+    MobilityError(&q, 0, Mob, &error);
     for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(Mob[k]));
-    CHECK(error < most_error * most, "%s, a0 = %g: Mob is E A^-1 E^T within %.1e", box, (double)a0, error / most);
-    PetscCall(PetscFree(Mob));
+    CHECK(error < most_error * most, "%s, a0 = %g: Mob is E A^-1 E^T within %.1e", box, a0, error / most);
+    TestCall(PetscFree(Mob));
   }
-  PetscCall(ProblemDestroy(&q));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  ProblemDestroy(&q);
 }
 
-static PetscErrorCode CheckCase(const char options[], PetscReal a0, PetscBool periodic) {
+static void CheckCase(const char options[], PetscReal a0, PetscBool periodic) {
   Problem q;
   char name[256], all[512];
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s a0 = %g", (int)strcspn(strstr(options, "-domain_cells") + 14, ";"),
-                          strstr(options, "-domain_cells") + 14, (double)a0));
-  PetscCall(PetscSNPrintf(all, sizeof(all), "%s -coupled_ksp_rtol 1e-12 %s", options,
-                          periodic ? "-domain_bc_x periodic -domain_bc_y periodic" : ""));
-  PetscCall(ProblemCreate(all, a0, &q));
-  PetscCall(CheckBending(name, &q));
-  PetscCall(CheckSolution(name, &q, PETSC_FALSE));
-  PetscCall(CheckSolution(name, &q, PETSC_TRUE));
-  for (PetscInt v = 0; v < q.t.layout->bodies && periodic; v++) PetscCall(CheckMobility(name, &q, v));
-  PetscCall(ProblemDestroy(&q));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(PetscSNPrintf(name, sizeof(name), "%.*s a0 = %g", (int)strcspn(strstr(options, "-domain_cells") + 14, ";"),
+                         strstr(options, "-domain_cells") + 14, a0));
+  TestCall(PetscSNPrintf(all, sizeof(all), "%s -coupled_ksp_rtol 1e-12 %s", options,
+                         periodic ? "-domain_bc_x periodic -domain_bc_y periodic" : ""));
+  ProblemCreate(all, a0, &q);
+  CheckBending(name, &q);
+  CheckSolution(name, &q, PETSC_FALSE);
+  CheckSolution(name, &q, PETSC_TRUE);
+  for (PetscInt v = 0; v < q.t.layout->bodies && periodic; v++) CheckMobility(name, &q, v);
+  ProblemDestroy(&q);
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   const PetscBool yes = PETSC_TRUE, no = PETSC_FALSE;
-  PetscFunctionBeginUser;
-  PetscCall(CheckCase("-domain_cells 48,48 -vesicle_bending 1", 100, no));
-  PetscCall(CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -domain_bc_x periodic "
-                      "-vesicle_center 0.95,0.05 -vesicle_angle 20",
-                      3, no));
-  PetscCall(CheckCase("-domain_cells 48,48 -vesicle_angle 20", 100, yes));
-  PetscCall(
-      CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -vesicle_center -0.97,0.93", 0.5, yes));
-  PetscCall(CheckCase("-domain_cells 32,32 -delta_type cbs54 -vesicle_center 0.9,0.9", 30, yes));
+  CheckCase("-domain_cells 48,48 -vesicle_bending 1", 100, no);
+  CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -domain_bc_x periodic "
+            "-vesicle_center 0.95,0.05 -vesicle_angle 20",
+            3, no);
+  CheckCase("-domain_cells 48,48 -vesicle_angle 20", 100, yes);
+  CheckCase("-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 -vesicle_center -0.97,0.93", 0.5, yes);
+  CheckCase("-domain_cells 32,32 -delta_type cbs54 -vesicle_center 0.9,0.9", 30, yes);
   /* two vesicles of different size, each with its own ds, and one that nearly fills the period */
-  PetscCall(CheckCase("-domain_cells 48,48 -vesicle_count 2 -vesicle_center -0.5,0,0.5,0 -vesicle_semi_axes "
-                      "0.2,0.5,0.3,0.35",
-                      20, yes));
-  PetscCall(CheckCase("-domain_cells 32,32 -vesicle_semi_axes 0.9,0.2", 20, yes));
+  CheckCase("-domain_cells 48,48 -vesicle_count 2 -vesicle_center -0.5,0,0.5,0 -vesicle_semi_axes "
+            "0.2,0.5,0.3,0.35",
+            20, yes);
+  CheckCase("-domain_cells 32,32 -vesicle_semi_axes 0.9,0.2", 20, yes);
   /* so many markers that every vesicle has a dense block of its own, with its owner */
-  PetscCall(
-      CheckCase("-domain_cells 256,256 -domain_bc_x periodic -vesicle_bending 1e-3 -vesicle_count 5 -vesicle_semi_axes "
-                "0.3,0.35,0.25,0.35,0.2,0.3,0.3,0.2,0.25,0.3 "
-                "-vesicle_center -0.5,-0.5,0.3,-0.5,-0.5,0.4,0.2,0.5,0.9,0.4",
-                20, no));
+  CheckCase("-domain_cells 256,256 -domain_bc_x periodic -vesicle_bending 1e-3 -vesicle_count 5 -vesicle_semi_axes "
+            "0.3,0.35,0.25,0.35,0.2,0.3,0.3,0.2,0.25,0.3 "
+            "-vesicle_center -0.5,-0.5,0.3,-0.5,-0.5,0.4,0.2,0.5,0.9,0.4",
+            20, no);
   /* images in walls are left to FGMRES; a channel lets the mean flow slip, which closed membranes do not make */
-  PetscCall(CheckNearField("-domain_bc_x periodic -domain_bc_y periodic", 3, 2e-6, 2));
-  PetscCall(CheckNearField("-domain_bc_x periodic -domain_bc_y periodic", 300, 2e-6, 2));
-  PetscCall(CheckNearField("-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none", 3, 2e-6, 2));
-  PetscCall(CheckNearField("-domain_bc_x periodic -fluid_inertia none", 3, 0.8, 7));
-  PetscCall(CheckNearField("-fluid_inertia none", 3, 0.2, 9));
-  PetscCall(CheckNearField("", 30, 0.1, 6));
-  PetscCall(CheckNearField("-domain_bc_x free -domain_bc_y free -fluid_inertia none", 3, 0, 1));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckNearField("-domain_bc_x periodic -domain_bc_y periodic", 3, 2e-6, 2);
+  CheckNearField("-domain_bc_x periodic -domain_bc_y periodic", 300, 2e-6, 2);
+  CheckNearField("-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none", 3, 2e-6, 2);
+  CheckNearField("-domain_bc_x periodic -fluid_inertia none", 3, 0.8, 7);
+  CheckNearField("-fluid_inertia none", 3, 0.2, 9);
+  CheckNearField("", 30, 0.1, 6);
+  CheckNearField("-domain_bc_x free -domain_bc_y free -fluid_inertia none", 3, 0, 1);
 }

@@ -118,7 +118,7 @@ static PetscReal SizeOf(PetscReal base, PetscInt level) {
 
 /* A row at a base; twice, as a pure function says the same again. What an attempt that is tried again leaves behind is
    its error. */
-static PetscErrorCode CheckRow(const Row *r, PetscReal base) {
+static void CheckRow(const Row *r, PetscReal base) {
   const StepPolicy policy = Policy(base);
   const StepTrial trial = {.solved = r->unsolved ? PETSC_FALSE : PETSC_TRUE,
                            .first = r->first,
@@ -130,7 +130,6 @@ static PetscErrorCode CheckRow(const Row *r, PetscReal base) {
                            .ratio = r->ratio};
   StepPlan plan[2];
   StepVerdict verdict[2];
-  PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     plan[k] = (StepPlan){.level = r->level, .before = r->before};
     verdict[k] = StepJudge(&policy, &trial, &plan[k]);
@@ -143,15 +142,13 @@ static PetscErrorCode CheckRow(const Row *r, PetscReal base) {
   CHECK(plan[0].before == left || (PetscIsNanReal(left) && PetscIsNanReal(plan[0].before)),
         "   and leaves the error %g behind", plan[0].before);
   CHECK(verdict[1] == verdict[0] && plan[1].level == plan[0].level, "   and says the same again");
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Without a limit on what markers move, and with other tolerances. */
-static PetscErrorCode CheckPolicies(void) {
+static void CheckPolicies(void) {
   StepPolicy policy = Policy(1);
   StepTrial trial = {.solved = PETSC_TRUE, .dt = 1, .error = SMALL, .speed = 1e6, .ratio = 1};
   StepPlan plan = {.before = NONE};
-  PetscFunctionBeginUser;
   policy.max_move = 0;
   CHECK(StepJudge(&policy, &trial, &plan) == STEP_ACCEPT && plan.level == 2, "max_move = 0: markers may go anywhere");
   policy.tolerance = 1;
@@ -160,7 +157,6 @@ static PetscErrorCode CheckPolicies(void) {
   CHECK(StepJudge(&policy, &trial, &plan) == STEP_ACCEPT && plan.level == 0, "half of another tolerance");
   trial.error = 2;
   CHECK(StepJudge(&policy, &trial, &plan) == STEP_REPEAT && plan.level == -2, "twice another tolerance");
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Sizes, over the base. */
@@ -201,8 +197,7 @@ static const struct {
              {"half of what is left, of twice the step before", 4, 0, NONE, 2.1, 1.05, 4, .last = 1},
              {"the level's step after a longer one", 0, 0, NONE, NONE, 1, 0, .last = 3}};
 
-static PetscErrorCode CheckSizes(PetscReal base) {
-  PetscFunctionBeginUser;
+static void CheckSizes(PetscReal base) {
   for (size_t k = 0; k < sizeof(sizes) / sizeof(sizes[0]); k++) {
     StepPolicy policy = Policy(base);
     StepPlan plan = {.level = sizes[k].level, .before = NONE};
@@ -213,17 +208,15 @@ static PetscErrorCode CheckSizes(PetscReal base) {
     CHECK(PetscAbsReal(dt / (base * sizes[k].dt) - 1) < 1e-14 && plan.level == sizes[k].next,
           "base %g, %s: %g of the base, level %d", base, sizes[k].name, dt / base, (int)plan.level);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Steps of one level up to an end: the last ten are equal, and none is shorter than 0.55 of a step or longer than 1.1.
  */
-static PetscErrorCode CheckEnd(PetscReal end) {
+static void CheckEnd(PetscReal end) {
   const StepPolicy policy = Policy(0.1);
   StepPlan plan = {.level = 0, .before = NONE};
   PetscReal t = 0, last[10] = {0}, least = NONE, most = 0, off = 0;
   int steps = 0;
-  PetscFunctionBeginUser;
   for (; !StepFinished(&policy, t, end) && steps < 1000; steps++) {
     const PetscReal dt = last[steps % 10] = StepSize(&policy, &plan, 0, NONE, end - t);
     least = PetscMin(least, dt);
@@ -233,7 +226,6 @@ static PetscErrorCode CheckEnd(PetscReal end) {
   for (int k = 0; k < PetscMin(steps, 10); k++) off = PetscMax(off, PetscAbsReal(last[k] - last[0]));
   CHECK(t == end && off < 1e-12 && least > 0.55 * policy.base && most < 1.1001 * policy.base,
         "%d steps to %g of %g to %g, the last ones %g", steps, end, least, most, last[0]);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Fixed steps of 0.1 to an end: whole ones, then one step or two equal ones that are shorter; sizes over the base. */
@@ -256,12 +248,11 @@ static const struct {
 
 /* n steps are taken to a multiple of the base, and each leads to the multiple's nearest decimal; n + part end in time.
  */
-static PetscErrorCode CheckFixedRun(PetscReal base, PetscInt n, PetscReal part) {
+static void CheckFixedRun(PetscReal base, PetscInt n, PetscReal part) {
   const StepPolicy p = {.base = base};
   const PetscReal end = (n + part) * base;
   PetscReal t = 0, least = NONE, off = 0;
   PetscInt steps = 0;
-  PetscFunctionBeginUser;
   for (; !StepFinished(&p, t, end) && steps < 2 * n + 2; steps++) {
     const PetscReal dt = StepFixed(&p, t, end);
     least = PetscMin(least, dt);
@@ -274,13 +265,11 @@ static PetscErrorCode CheckFixedRun(PetscReal base, PetscInt n, PetscReal part) 
   else
     CHECK(t == end && off == 0 && steps == n + 1 && (!n || least >= 0.5 * base),
           "%g steps of %g: %d, t %.17g of %.17g, least %g", n + part, base, (int)steps, t, end, least);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckFixed(void) {
+static void CheckFixed(void) {
   const PetscReal bases[] = {0.1, 0.02, 1. / 3, 0.0125, 7};
   StepPolicy p = {.base = 0.1};
-  PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(fixed) / sizeof(fixed[0]); k++) {
     const PetscReal t = fixed[k].t * p.base, until = fixed[k].most < NONE ? t + fixed[k].most * p.base : NONE;
     const PetscReal dt = StepFixed(&p, t, until);
@@ -290,14 +279,13 @@ static PetscErrorCode CheckFixed(void) {
     for (int e = 0; e < 6; e++) {
       PetscInt n = 1;
       for (int k = 0; k < e; k++) n *= 10;
-      PetscCall(CheckFixedRun(bases[b], n, 0));
-      PetscCall(CheckFixedRun(bases[b], n - 1, 1. / 3));
+      CheckFixedRun(bases[b], n, 0);
+      CheckFixedRun(bases[b], n - 1, 1. / 3);
     }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Times of steps: decimals, whatever the sum is in binary; the end itself; of adaptive steps the sum. */
-static PetscErrorCode CheckTimes(void) {
+static void CheckTimes(void) {
   static const struct {
     PetscReal base, t, dt, until, want;
   } times[] = {{0.1, 0.2, 0.1, NONE, 0.3},          {0.01, 0.34, 0.01, NONE, 0.35}, {0.01, 2.99, 0.01, NONE, 3},
@@ -305,7 +293,6 @@ static PetscErrorCode CheckTimes(void) {
                {1. / 3, 2. / 3, 1. / 3, NONE, 1},   {7e-5, 0.69993, 7e-5, 1, 0.7},  {0.1, 0.2, 0.1, 0.1 * 3, 0.1 * 3},
                {0.1, 123456.7, 0.1, NONE, 123456.8}};
   StepPolicy p = Policy(0.1);
-  PetscFunctionBeginUser;
   CHECK(StepTime(&p, 0.2, 0.1, NONE) == 0.2 + 0.1 && StepTime(&p, 0.2, 0.1, 0.3) == 0.3, "adaptive steps: the sum");
   p.adaptive = PETSC_FALSE;
   for (size_t k = 0; k < sizeof(times) / sizeof(times[0]); k++) {
@@ -313,57 +300,50 @@ static PetscErrorCode CheckTimes(void) {
     const PetscReal t = StepTime(&p, times[k].t, times[k].dt, times[k].until);
     CHECK(t == times[k].want, "%.17g after %g: %.17g", times[k].dt, times[k].t, t);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* When a time counts as the end: within rounding of it. */
-static PetscErrorCode CheckFinished(void) {
+static void CheckFinished(void) {
   StepPolicy p = Policy(0.1);
-  PetscFunctionBeginUser;
   CHECK(StepFinished(&p, 3, 3) && StepFinished(&p, 3.5, 3) && StepFinished(&p, 3 - 1e-11, 3), "the end");
   CHECK(!StepFinished(&p, 3 - 1e-9, 3) && !StepFinished(&p, 2.96, 3), "before the end");
   p.adaptive = PETSC_FALSE;
   CHECK(StepFinished(&p, 3 - 1e-11, 3) && !StepFinished(&p, 2.999, 3), "fixed steps");
   CHECK(StepFinished(&p, 1e5 - 1e-10, 1e5) && !StepFinished(&p, 1e5 - 1e-6, 1e5), "a million of them");
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The policy of a scene; without vesicles there is no error to judge by. */
-static PetscErrorCode CheckPolicy(void) {
+static void CheckPolicy(void) {
   static const char options[] = "-domain_cells 64,64 -scheme_type coupled -time_step 0.02 -time_adapt_tol 3e-4 "
                                 "-time_adapt_max_move 2 -time_adapt_max_step 0.5 -time_adapt error";
   const PetscReal first = SizeOf(1, StepFirstLevel());
   StepPolicy p;
   Scene scene;
-  PetscFunctionBeginUser;
-  PetscCall(TestScene(options, &scene));
+  TestScene(&scene, "%s", options);
   p = StepPolicyCreate(scene, scene->shape.vesicles);
   CHECK(p.adaptive && p.base == 0.02 && p.tolerance == 3e-4 && p.max_move == 2. / 32 && p.max_step == 0.5,
         "a policy has what its scene says: base %g, tolerance %g, move %g, step %g", p.base, p.tolerance, p.max_move,
         p.max_step);
   p = StepPolicyCreate(scene, 0);
   CHECK(!p.adaptive && p.base == 0.02, "without vesicles steps are fixed");
-  PetscCall(SceneDestroy(&scene));
-  PetscCall(TestScene("-domain_cells 64,64 -scheme_type coupled -time_step 0.02", &scene));
+  TestCall(SceneDestroy(&scene));
+  TestScene(&scene, "-domain_cells 64,64 -scheme_type coupled -time_step 0.02");
   p = StepPolicyCreate(scene, scene->shape.vesicles);
   CHECK(!p.adaptive, "without -time_adapt error steps are fixed");
   CHECK(PetscAbsReal(32 * first - 1) < 1e-14, "an adaptive run starts with a step of base/32");
-  PetscCall(SceneDestroy(&scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  TestCall(SceneDestroy(&scene));
 }
 
-PetscErrorCode Facts(void) {
+void Facts(void) {
   static const PetscReal bases[] = {1, 0.25, 1024}; /* powers of 2: the same rounding */
-  PetscFunctionBeginUser;
   for (int b = 0; b < 3; b++) {
-    for (size_t k = 0; k < sizeof(rows) / sizeof(rows[0]); k++) PetscCall(CheckRow(&rows[k], bases[b]));
-    PetscCall(CheckSizes(bases[b]));
+    for (size_t k = 0; k < sizeof(rows) / sizeof(rows[0]); k++) CheckRow(&rows[k], bases[b]);
+    CheckSizes(bases[b]);
   }
-  PetscCall(CheckPolicies());
-  for (int k = 1; k < 20; k++) PetscCall(CheckEnd(0.2 + 0.037 * k));
-  PetscCall(CheckFixed());
-  PetscCall(CheckTimes());
-  PetscCall(CheckFinished());
-  PetscCall(CheckPolicy());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckPolicies();
+  for (int k = 1; k < 20; k++) CheckEnd(0.2 + 0.037 * k);
+  CheckFixed();
+  CheckTimes();
+  CheckFinished();
+  CheckPolicy();
 }

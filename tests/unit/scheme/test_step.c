@@ -53,22 +53,19 @@ static PetscReal Speed(PetscInt n, const PetscReal X[], const PetscReal velocity
   return (au * rr - ru * ar) / (aa * rr - ar * ar);
 }
 
-static PetscErrorCode CheckFormula(const char options[], PetscReal dt, PetscBool turns, int order) {
+static void CheckFormula(const char options[], PetscReal dt, PetscBool turns, int order) {
   static const PetscReal a[4][4] = {{0}, {1, 1}, {3. / 2, 2, -1. / 2}, {11. / 6, 3, -3. / 2, 1. / 3}};
   const char *last = strstr(options, "-vesicle_bending");
-  char all[512];
   TestWorld w;
   PetscReal *X[FIRST], *U[2], *found, *shifted, *work, off = 0, speed = 0;
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(all, sizeof(all), "%s -scheme_order %d -time_step %.17g", options, order, dt));
-  PetscCall(TestRunCreate(all, &w));
+  TestRunCreate(&w, "%s -scheme_order %d -time_step %.17g", options, order, dt);
   const PetscInt n = w.layout->M;
-  for (int k = 0; k < 32; k++) PetscCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
-  for (int k = 0; k < FIRST; k++) PetscCall(PetscMalloc1(2 * n, &X[k]));
-  PetscCall(PetscMalloc5(2 * n, &U[0], 2 * n, &U[1], 2 * n, &found, 2 * n, &shifted, 6 * n, &work));
+  for (int k = 0; k < 32; k++) TestCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
+  for (int k = 0; k < FIRST; k++) TestCall(PetscMalloc1(2 * n, &X[k]));
+  TestCall(PetscMalloc5(2 * n, &U[0], 2 * n, &U[1], 2 * n, &found, 2 * n, &shifted, 6 * n, &work));
   for (int k = 0; k < FIRST; k++)
-    PetscCall(LayoutGatherVec(w.layout, k ? w.scheme->old[k - 1].X : w.scheme->state.X, X[k]));
-  for (int k = 0; k < 2; k++) PetscCall(LayoutGatherVec(w.layout, k ? w.scheme->old[0].U : w.scheme->state.U, U[k]));
+    TestCall(LayoutGatherVec(w.layout, k ? w.scheme->old[k - 1].X : w.scheme->state.X, X[k]));
+  for (int k = 0; k < 2; k++) TestCall(LayoutGatherVec(w.layout, k ? w.scheme->old[0].U : w.scheme->state.U, U[k]));
   if (turns) speed = Speed(n, X[1], U[1], work);
   Derivative(n, X[0], work);
   for (PetscInt i = 0; i < 2 * n; i++) found[i] = a[order][0] * X[0][i] / dt + speed * work[i];
@@ -80,10 +77,9 @@ static PetscErrorCode CheckFormula(const char options[], PetscReal dt, PetscBool
   CHECK(!*w.scheme->report.failure && off < 1e-12 && turns == (PetscAbsReal(speed) > 0.3),
         "%s, dt = %g: order %d, labels that turn at %.2f: U is the formula's, %.1e", last ? last : "chords", dt, order,
         speed, off);
-  for (int k = 0; k < FIRST; k++) PetscCall(PetscFree(X[k]));
-  PetscCall(PetscFree5(U[0], U[1], found, shifted, work));
-  PetscCall(TestWorldDestroy(&w));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < FIRST; k++) TestCall(PetscFree(X[k]));
+  TestCall(PetscFree5(U[0], U[1], found, shifted, work));
+  TestWorldDestroy(&w);
 }
 
 #define SHEAR                                                                                                          \
@@ -92,14 +88,12 @@ static PetscErrorCode CheckFormula(const char options[], PetscReal dt, PetscBool
   "-delta_type cbs54 "                                                                                                 \
   "-coupling_near_field exact -vesicle_markers 45 -vesicle_allow_close_markers "
 
-PetscErrorCode Facts(void) {
-  PetscFunctionBeginUser;
+void Facts(void) {
   for (int k = 0; k < 27; k++) {
     static const PetscReal bending[] = {0.1, 0.3, 1}, dt[] = {0.125, 0.1, 0.08};
     char options[512];
-    PetscCall(PetscSNPrintf(options, sizeof(options), SHEAR "-vesicle_bending %g", (double)bending[k / 9]));
-    PetscCall(CheckFormula(options, dt[k / 3 % 3], PETSC_TRUE, 1 + k % 3));
+    TestCall(PetscSNPrintf(options, sizeof(options), SHEAR "-vesicle_bending %g", bending[k / 9]));
+    CheckFormula(options, dt[k / 3 % 3], PETSC_TRUE, 1 + k % 3);
   }
-  PetscCall(CheckFormula(SHEAR "-membrane_derivative bending", 0.125, PETSC_FALSE, 2));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  CheckFormula(SHEAR "-membrane_derivative bending", 0.125, PETSC_FALSE, 2);
 }
