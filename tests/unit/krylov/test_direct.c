@@ -161,7 +161,8 @@ static void PaperScenes(void) {
 }
 
 #define PAIR                                                                                                           \
-  " -domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_count 2 -vesicle_semi_axes 0.2,0.4 -vesicle_angle 0"
+  " -domain_box -1.125,1.125,-1.125,1.125 -domain_cells 36,36 -vesicle_count 2 -vesicle_semi_axes 0.2,0.4 "            \
+  "-vesicle_angle 0"
 #define SMALL                                                                                                          \
   " -domain_box -2,2,-2,2 -domain_cells 32,32 -flow_type shear -vesicle_area 0.5 -vesicle_markers 25 -vesicle_count "  \
   "2 "                                                                                                                 \
@@ -174,7 +175,7 @@ static void PaperScenes(void) {
   "-flow_type shear"
 #define SETTLES                                                                                                        \
   " -domain_box -4,4,-4,4 -domain_cells 32,32 -vesicle_area 1 -vesicle_reduced_area .7 -vesicle_markers 35 "           \
-  "-vesicle_bending .03 -vesicle_density_difference 2 -fluid_gravity 0,-1 -scheme_order 3 -time_step .05 -time_end .3"
+  "-vesicle_bending .03 -vesicle_density_difference 2 -fluid_gravity 0,-1 -scheme_order 3 -time_step .05 -time_end .2"
 #define POST                                                                                                           \
   " -vesicle_area .19634954 -vesicle_reduced_area .7 -vesicle_angle 90 -vesicle_center .25,1 -domain_box 0,2,0,2 "     \
   "-domain_cells 32,32 -obstacle_shape posts -obstacle_radius .3 -obstacle_center 1,1 -obstacle_spacing .75 "          \
@@ -199,7 +200,7 @@ static const struct {
     {"seam", CELLS " -domain_cells 33,33 -vesicle_center 0.97,-0.95" PERIODIC, 1e-9},
     {"close markers", CELLS " -vesicle_spacing 0.7", 1e-9},
     {"pair", CELLS PAIR " -vesicle_center -0.29375,0.05,0.29375,-0.05", 1e-9},
-    {"pair over a seam", CELLS PAIR " -vesicle_center -1.3,0.05,1.1,-0.05" CHANNEL, 1e-9},
+    {"pair over a seam", CELLS PAIR " -vesicle_center -0.925,0.05,0.725,-0.05" CHANNEL, 1e-9},
     {"no bending", CELLS " -vesicle_bending 0", 1e-9},
     {"little bending", CELLS " -vesicle_bending 1e-4", 1e-9},
     {"stiff", CELLS " -vesicle_bending 1", 1e-9},
@@ -222,7 +223,7 @@ static const struct {
     {"post with inertia", POST " -fluid_inertia unsteady", 1e-9},
     {"post and contrast", POST " -vesicle_viscosity_ratio 5", 1e-9},
     {"post, flux held",
-     POISEUILLE " -vesicle_shape none -domain_cells 96,32 -obstacle_shape posts -obstacle_center 1.5,.5 "
+     POISEUILLE " -vesicle_shape none -domain_cells 72,24 -obstacle_shape posts -obstacle_center 1.5,.5 "
                 "-obstacle_radius .2 -flow_drive flux -time_step .01 -time_end .01",
      1e-9},
     {"throat", THROAT, 3e-9},
