@@ -88,8 +88,7 @@ static void AddVesicle(Direct *d, PetscInt v) {
   const PetscInt V = d->first[PART_V] + 2 * first, F = d->first[PART_F] + 2 * first, area = d->first[PART_AREA] + v;
   const PetscReal h2 = PetscSqr(d->grid->h), a0 = d->fluid->a0;
   const Turning *turning = (const Turning *)ForcesFind(d->c->forces, "turning");
-  PetscReal *unit, *D, *force, *turned;
-  TestCall(PetscCalloc4(2 * n, &unit, 2 * n * n, &D, 2 * n, &force, 2 * n, &turned));
+  PetscReal *unit = TestReals(2 * n), *D = TestReals(2 * n * n), *force = TestReals(2 * n), *turned = TestReals(2 * n);
   TestCall(LawBlock(d->c->law, v, D));
   for (PetscInt c = 0; c < 2 * n; c++) {
     unit[c] = 1;
@@ -111,7 +110,6 @@ static void AddVesicle(Direct *d, PetscInt v) {
     if (LawAimsAreas(d->c->law)) DirectAdd(d, area, V + c, d->c->law->z[2 * first + c]);
     unit[c] = 0;
   }
-  TestCall(PetscFree4(unit, D, force, turned));
 }
 
 /* The springs of a repulsion: -(K_rep/(h^2 a0)) V in the rows of F. */
@@ -132,11 +130,9 @@ static void AddNearField(Direct *d) {
   const Obstacles o = d->c->bodies->obstacles;
   const PetscInt n = 2 * d->c->bodies->layout->M, solid = d->first[PART_SOLID];
   const PetscReal h2 = PetscSqr(d->grid->h);
-  PetscReal *C;
-  TestCall(PetscCalloc1(n * n, &C));
+  PetscReal *C = TestReals(n * n);
   if (d->c->mobility->near) TestCall(NearFieldAdd(d->c->mobility->near, h2, PETSC_TRUE, 0, n / 2, C));
   for (PetscInt k = 0; k < n * n; k++) DirectAdd(d, DirectRow(d, k % n), d->first[PART_F] + k / n, C[k]);
-  TestCall(PetscFree(C));
   for (PetscInt b = 0; o && b < o->layout->bodies; b++)
     for (PetscInt i = 2 * o->layout->start[b]; i < 2 * o->layout->start[b + 1]; i++)
       for (PetscInt j = 2 * o->layout->start[b]; j < 2 * o->layout->start[b + 1]; j++)

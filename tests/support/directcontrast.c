@@ -45,8 +45,7 @@ static void AddJump(Direct *d, PetscInt v) {
   const PetscInt first = 2 * m->layout->start[v], n = 2 * LayoutCount(m->layout, v);
   const PetscInt J = d->first[PART_JUMP] + first, V = d->first[PART_V] + first;
   const PetscReal *N = s->normal + first, *along = s->along + first / 2;
-  PetscReal *unit, *out;
-  TestCall(PetscCalloc2(n, &unit, n, &out));
+  PetscReal *unit = TestReals(n), *out = TestReals(n);
   for (PetscInt c = 0; c < n; c++) {
     PetscReal flux = 0;
     DirectAdd(d, J + c, J + c, 1);
@@ -59,22 +58,19 @@ static void AddJump(Direct *d, PetscInt v) {
       DirectAdd(d, J + k, V + c, -(1 - s->ratio[v]) * (out[k] - flux / s->length[v] * N[k] / along[k / 2]));
     unit[c] = 0;
   }
-  TestCall(PetscFree2(unit, out));
 }
 
 /* Minus C_D of the vesicles' motion in the rows of obstacles. */
 static void AddToObstacles(Direct *d) {
   const Membrane m = d->c->membrane;
   const PetscInt M = 2 * m->layout->M, n = 2 * d->c->bodies->layout->M;
-  PetscReal *C, *row;
-  TestCall(PetscCalloc2(n * n, &C, M, &row));
+  PetscReal *C = TestReals(n * n), *row = TestReals(M);
   TestCall(DoubleLayerAdd(d->c->mobility->contrast, -1, PETSC_TRUE, 0, n / 2, C));
   for (PetscInt i = M; i < n; i++) {
     for (PetscInt j = 0; j < M; j++) row[j] = C[j * n + i];
     TestCall(ContrastTread(m, 0, m->layout->bodies, d->c->treading, d->fluid->a0, 1, row));
     for (PetscInt j = 0; j < M; j++) DirectAdd(d, DirectRow(d, i), d->first[PART_V] + j, row[j]);
   }
-  TestCall(PetscFree2(C, row));
 }
 
 void DirectAddContrast(Direct *d) {
@@ -82,20 +78,18 @@ void DirectAddContrast(Direct *d) {
   const Layout l = d->c->membrane->layout;
   const PetscInt n = 2 * l->M, V = d->first[PART_V];
   const PetscInt tensors = DIPOLE_COUNT * d->c->bodies->layout->M, rows = 2 * d->c->bodies->layout->M;
-  PetscReal *B, *D = NULL, *unit;
-  TestCall(PetscCalloc1(n * n, &B));
+  PetscReal *D = NULL;
+  PetscReal *B = TestReals(n * n);
   TestCall(ContrastMatrix(d->c, PETSC_TRUE, d->fluid->a0, 0, l->M, B));
   for (PetscInt i = 0; i < n * n; i++) DirectAdd(d, V + i / n, V + i % n, B[i]);
-  TestCall(PetscFree(B));
   AddToObstacles(d);
-  TestCall(PetscCalloc1(tensors, &unit));
+  PetscReal *unit = TestReals(tensors);
   if (s->box) TestCall(PetscCalloc1(rows * tensors, &D));
   for (PetscInt j = 0; j < tensors && D; j++) {
     unit[j] = 1;
     TestCall(BoxPartApply(s->box, -1, unit, D + j * rows));
     unit[j] = 0;
   }
-  TestCall(PetscFree(unit));
   for (PetscInt k = 0; k < n; k++)
     if (s->ratio[LayoutBody(l, k / 2)] != 1) AddUnitJump(d, k / 2, (int)(k % 2), D);
   TestCall(PetscFree(D));

@@ -29,7 +29,7 @@ static void CheckCircle(void) {
   const PetscReal energy = 0.5 * 0.3 * M * edge * PetscSqr(2 * PetscSinReal(half) / edge);
   TestMembrane m;
   Measures got;
-  PetscReal error, frequency, *U;
+  PetscReal error, frequency;
   Ellipse(M, R, R, 30, &m);
   MembraneMeasure(m.membrane, 0, m.scene->shape.X, &got);
   error = PetscAbsReal(got.area / (0.5 * M * R * R * PetscSinReal(2 * half)) - 1);
@@ -41,7 +41,7 @@ static void CheckCircle(void) {
   CHECK(error < 1e-13, "circle: centroid, error %.1e", error);
   error = PetscAbsReal(MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X) / energy - 1);
   CHECK(error < 1e-10, "circle: bending energy of the regular polygon, error %.1e", error);
-  TestCall(PetscMalloc1(2 * M, &U));
+  PetscReal *U = TestReals(2 * M);
   for (PetscInt k = 0; k < M; k++) {
     U[2 * k] = 0.4 - omega * (m.scene->shape.X[2 * k + 1] + 0.5); /* rotation and translation */
     U[2 * k + 1] = -0.2 + omega * (m.scene->shape.X[2 * k] - 1.25);
@@ -57,7 +57,6 @@ static void CheckCircle(void) {
   for (PetscInt k = 0; k < M; k++) U[2 * k + 1] = 0;
   frequency = MembraneFrequency(m.membrane, 0, m.scene->shape.X, U);
   CHECK(PetscIsNanReal(frequency), "circle: no frequency where the membrane does not rotate in one sense");
-  TestCall(PetscFree(U));
   TestMembraneDestroy(&m);
 }
 
@@ -149,8 +148,8 @@ static void CheckFile(void) {
 static void CheckBending(const TestMembrane *m, unsigned *state) {
   const PetscInt n = 2 * m->M;
   const PetscReal e = 1e-2, *X = m->scene->shape.X;
-  PetscReal *F, *V, *W, slope, product = 0, swapped = 0, error, size = 0;
-  TestCall(PetscMalloc3(n, &F, n, &V, n, &W));
+  PetscReal slope, product = 0, swapped = 0, error, size = 0;
+  PetscReal *F = TestReals(n), *V = TestReals(n), *W = TestReals(n);
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
   for (PetscInt k = 0; k < n; k++) W[k] = X[k] + e * V[k];
   slope = MembraneBendingEnergy(m->membrane, 0, W);
@@ -171,16 +170,16 @@ static void CheckBending(const TestMembrane *m, unsigned *state) {
   for (PetscInt k = 0; k < n; k++) swapped += F[k] * W[k];
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "bending is symmetric, error %.1e",
         PetscAbsReal(product - swapped) / size);
-  TestCall(PetscFree3(F, V, W));
 }
 
 /* Dm and Dm^T, their dense matrix, and what Dm makes of a rigid motion. */
 static void CheckStretching(const TestMembrane *m, unsigned *state) {
   const PetscInt n = 2 * m->M;
   const PetscReal *X = m->scene->shape.X;
-  PetscReal *F, *V, *sigma, *d, *D, product = 0, swapped = 0, size = 0, error = 0, dense = 0;
+  PetscReal product = 0, swapped = 0, size = 0, error = 0, dense = 0;
   MembraneLaw law;
-  TestCall(PetscCalloc5(n, &F, n, &V, m->M, &sigma, m->M, &d, m->M * n, &D));
+  PetscReal *F = TestReals(n), *V = TestReals(n), *sigma = TestReals(m->M), *d = TestReals(m->M),
+            *D = TestReals(m->M * n);
   TestCall(LawCreate(m->membrane, 1, 0, 1, &law));
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
   for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
@@ -203,7 +202,6 @@ static void CheckStretching(const TestMembrane *m, unsigned *state) {
   for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(d[k]));
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
   TestCall(LawDestroy(&law));
-  TestCall(PetscFree5(F, V, sigma, d, D));
 }
 
 /* The laws of stretching: sigma = 2 dW/dq and its derivative by q by differences, and E (lambda - 1) at small strain.

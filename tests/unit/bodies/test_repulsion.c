@@ -30,8 +30,8 @@ static void FindEnergy(const Force *force, const PetscReal X[], PetscReal *energ
 /* Largest difference of the force from the energy's slope, over the largest force. */
 static void CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
   const PetscReal step = 1e-6;
-  PetscReal *F, around[2], off = 0, largest = 0, sum[2] = {0, 0};
-  TestCall(PetscCalloc1(2 * l->M, &F));
+  PetscReal around[2], off = 0, largest = 0, sum[2] = {0, 0};
+  PetscReal *F = TestReals(2 * l->M);
   TestCall(r->law(r->context, (Instant){0}, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
@@ -48,14 +48,14 @@ static void CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
         off);
   CHECK(PetscAbsReal(sum[0]) < 1e-12 && (c->wall ? sum[1] > 0.01 : PetscAbsReal(sum[1]) < 1e-12),
         "%s: forces add up to %.1g, %.3g", c->name, sum[0], sum[1]);
-  TestCall(PetscFree(F));
 }
 
 /* At X*, push - K_rep X is the force; K_rep is symmetric and takes energy. */
 static void CheckSprings(const Case *c, const Force *r, Layout l, const PetscReal X[]) {
-  PetscReal *F, *x, *y, *Kx, *Ky, off = 0, products[3] = {0, 0, 0};
+  PetscReal off = 0, products[3] = {0, 0, 0};
   unsigned seed = 5;
-  TestCall(PetscCalloc5(2 * l->M, &F, 2 * l->M, &x, 2 * l->M, &y, 2 * l->M, &Kx, 2 * l->M, &Ky));
+  PetscReal *F = TestReals(2 * l->M), *x = TestReals(2 * l->M), *y = TestReals(2 * l->M), *Kx = TestReals(2 * l->M),
+            *Ky = TestReals(2 * l->M);
   TestCall(r->place(r->context, (Instant){0}, X));
   TestCall(r->law(r->context, (Instant){0}, X, F));
   TestCall(r->known(r->context, 1, X, F));
@@ -76,25 +76,23 @@ static void CheckSprings(const Case *c, const Force *r, Layout l, const PetscRea
         c->name, (int)((Repulsion)r->context)->count, off);
   CHECK(PetscAbsReal(products[0] - products[1]) < 1e-12 && products[2] >= 0, "%s: K_rep is symmetric, x.K_rep x = %.3g",
         c->name, products[2]);
-  TestCall(PetscFree5(F, x, y, Kx, Ky));
 }
 
 /* With a range shorter than every film there is neither spring nor force nor energy. */
 static void CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
   struct _p_Scene near = *m->scene;
-  PetscReal *F, energy = 0, largest = 0;
+  PetscReal energy = 0, largest = 0;
   Force r;
   near.repulsion = c->law;
   near.repulsion.range = near.repulsion.band = 1e-3;
   TestCall(ForceCreate_Contact(bodies, grid, &near, &r));
-  TestCall(PetscCalloc1(2 * m->M, &F));
+  PetscReal *F = TestReals(2 * m->M);
   TestCall(r.place(r.context, (Instant){0}, X));
   TestCall(r.law(r.context, (Instant){0}, X, F));
   FindEnergy(&r, X, &energy);
   for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
   CHECK(((Repulsion)r.context)->count == 0 && energy == 0 && largest == 0,
         "%s: out of range there are %d springs and no force", c->name, (int)((Repulsion)r.context)->count);
-  TestCall(PetscFree(F));
   TestCall(r.destroy(r.context));
 }
 
@@ -104,19 +102,17 @@ void Facts(void) {
     Bodies bodies;
     Force r;
     Grid grid;
-    PetscReal *X;
     TestMembraneCreate(&m, "%s%s", scene, cases[k].centers);
     TestCall(GridCreate(&m.scene->fluid, &grid));
     TestCall(BodiesCreate(m.membrane, NULL, &bodies));
     struct _p_Scene near = *m.scene;
     near.repulsion = cases[k].law;
     TestCall(ForceCreate_Contact(bodies, grid, &near, &r));
-    TestCall(PetscMalloc1(2 * m.M, &X));
+    PetscReal *X = TestReals(2 * m.M);
     TestCall(PetscArraycpy(X, m.scene->shape.X, 2 * m.M));
     CheckSlope(&cases[k], &r, m.layout, X);
     CheckSprings(&cases[k], &r, m.layout, X);
     CheckRange(&cases[k], &m, bodies, grid, X);
-    TestCall(PetscFree(X));
     TestCall(r.destroy(r.context));
     TestCall(BodiesDestroy(&bodies));
     TestCall(GridDestroy(&grid));

@@ -34,11 +34,11 @@ static void Errors(const TestMembrane *w, const PetscScalar X[], PetscReal area,
 static void CheckRestored(int derivative, PetscReal epsilon) {
   TestMembrane w;
   unsigned seed = 3;
-  PetscReal *X, *before, wave[8], error[2], found, drift[2] = {0, 0};
+  PetscReal wave[8], error[2], found, drift[2] = {0, 0};
   Measures measures;
   Create(derivative, "0.25,0.5", 35, &w);
   const PetscInt M = w.M;
-  TestCall(PetscMalloc2(2 * M, &X, 2 * M, &before));
+  PetscReal *X = TestReals(2 * M), *before = TestReals(2 * M);
   for (int q = 0; q < 8; q++) wave[q] = TestRandom(&seed);
   for (PetscInt k = 0; k < 2 * M; k++) {
     X[k] = w.scene->shape.X[k] + 0.2 * epsilon * w.membrane->ds[0] * TestRandom(&seed);
@@ -57,7 +57,6 @@ static void CheckRestored(int derivative, PetscReal epsilon) {
         error[0], error[1]);
   CHECK(PetscAbsReal(drift[0]) + PetscAbsReal(drift[1]) < 1e-14, "%s, %.0e: the markers' mean stays, to %.1e",
         derivatives[derivative], epsilon, PetscAbsReal(drift[0]) + PetscAbsReal(drift[1]));
-  TestCall(PetscFree2(X, before));
   TestMembraneDestroy(&w);
 }
 
@@ -65,8 +64,8 @@ static void CheckRestored(int derivative, PetscReal epsilon) {
    are quadratic. */
 static void AreaGradient(const TestMembrane *w, PetscReal gradient[]) {
   const PetscReal step = 1e-3;
-  PetscReal *X, change[2];
-  TestCall(PetscMalloc1(2 * w->M, &X));
+  PetscReal change[2];
+  PetscReal *X = TestReals(2 * w->M);
   for (PetscInt k = 0; k < 2 * w->M; k++) {
     for (int side = 0; side < 2; side++) {
       Measures measures;
@@ -77,7 +76,6 @@ static void AreaGradient(const TestMembrane *w, PetscReal gradient[]) {
     }
     gradient[k] = (change[1] - change[0]) / (2 * step);
   }
-  TestCall(PetscFree(X));
 }
 
 /* A displacement across the shapes with the right edges: J^T lambda, J^T of edges alone being that of MembraneEdges. It
@@ -85,8 +83,8 @@ static void AreaGradient(const TestMembrane *w, PetscReal gradient[]) {
 static void Across(const TestMembrane *w, PetscReal across[]) {
   const Membrane m = w->membrane;
   const PetscInt n = 2 * w->M;
-  PetscReal *e, *normal, flux = 0, size = 0, largest = 0;
-  TestCall(PetscCalloc2(n, &e, n, &normal));
+  PetscReal flux = 0, size = 0, largest = 0;
+  PetscReal *e = TestReals(n), *normal = TestReals(n);
   TestCall(PetscArrayzero(across, n));
   AreaGradient(w, normal);
   MembraneEdges(m, 0, w->scene->shape.X, e);
@@ -104,7 +102,6 @@ static void Across(const TestMembrane *w, PetscReal across[]) {
     largest = PetscMax(largest, PetscAbsReal(across[k]));
   }
   for (PetscInt k = 0; k < n; k++) across[k] /= largest;
-  TestCall(PetscFree2(e, normal));
 }
 
 /* The shape found is the nearest: from X_0 + t J^T lambda, J^T lambda being across the shapes with the right edges,
@@ -133,11 +130,11 @@ static void CheckNearest(int derivative) {
 /* What is left after one, two and three steps of Newton: the square of what was left before, times a constant. */
 static void CheckQuadratic(int derivative) {
   TestMembrane w;
-  PetscReal *X, left[4];
+  PetscReal left[4];
   Create(derivative, "0.25,0.5", 35, &w);
   const PetscInt M = w.M;
   const PetscBool spectral = derivative == 2 ? PETSC_TRUE : PETSC_FALSE;
-  TestCall(PetscMalloc1(2 * M, &X));
+  PetscReal *X = TestReals(2 * M);
   for (PetscInt most = 0; most < 4; most++) {
     for (PetscInt k = 0; k < 2 * M; k++) {
       const PetscReal t = 2 * PETSC_PI * (k / 2) / M;
@@ -150,7 +147,6 @@ static void CheckQuadratic(int derivative) {
   for (int k = 1; k < 3; k++)
     CHECK(left[k + 1] < 5 * PetscSqr(left[k]) + 1e-13, "%s: %.1e, after another one %.1e: %.1f times the square",
           derivatives[derivative], left[k], left[k + 1], left[k + 1] / PetscSqr(left[k]));
-  TestCall(PetscFree(X));
   TestMembraneDestroy(&w);
 }
 
@@ -159,17 +155,16 @@ static void CheckNothingMoves(int derivative) {
   static const char *const axes[] = {"0.25,0.5", "0.4,0.4"};
   for (int circle = 0; circle < 2; circle++) {
     TestMembrane w;
-    PetscReal *X, *before, found;
+    PetscReal found;
     PetscBool same;
     Create(derivative, axes[circle], 35, &w);
     const PetscInt M = w.M;
-    TestCall(PetscMalloc2(2 * M, &X, 2 * M, &before));
+    PetscReal *X = TestReals(2 * M), *before = TestReals(2 * M);
     for (PetscInt k = 0; k < 2 * M; k++) X[k] = before[k] = (circle ? 1.01 : 1.0009) * w.scene->shape.X[k];
     TestCall(MembraneRestoreEdges(w.membrane, 0, 1e-3, X, &found));
     TestCall(PetscArraycmp(X, before, 2 * M, &same));
     CHECK(same && found == 0, "%s: %s moves nothing", derivatives[derivative],
           circle ? "a circle that is too large" : "an edge error of 9e-4");
-    TestCall(PetscFree2(X, before));
     TestMembraneDestroy(&w);
   }
 }

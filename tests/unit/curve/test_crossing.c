@@ -18,10 +18,9 @@ static PetscBool CountPair(void *context, PetscInt i, PetscInt j, const PetscRea
 static void CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, PetscReal reach) {
   const PetscReal period[2] = {period_x, period_y};
   Count c = {.n = n};
-  PetscReal *X;
   PetscInt wanted = 0;
   unsigned seed = 7;
-  TestCall(PetscMalloc1(2 * n, &X));
+  PetscReal *X = TestReals(2 * n);
   TestCall(PetscCalloc1(n * n, &c.seen));
   for (PetscInt k = 0; k < 2 * n; k++) X[k] = 3 * TestRandom(&seed); /* some are outside of a period */
   for (PetscInt i = 0; i < n; i++)
@@ -44,7 +43,6 @@ static void CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, Petsc
     TestCall(PairsWithin(n, X, part, period, reach, CountPair, &c));
   }
   CHECK(c.pairs == wanted && !c.repeated, "%d points in two parts: %d pairs", (int)n, (int)c.pairs);
-  TestCall(PetscFree(X));
   TestCall(PetscFree(c.seen));
 }
 

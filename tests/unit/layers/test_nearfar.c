@@ -56,8 +56,7 @@ static void CheckClosedForm(const OffsetTable *t, const char kernel[], const cha
   const NearField f = w.coupling->mobility->near;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->kernel->reach[NEAR_TWO] + 2;
   const Layout l = w.layout;
-  PetscReal *all;
-  TestCall(PetscCalloc1(4 * l->M * l->M, &all));
+  PetscReal *all = TestReals(4 * l->M * l->M);
   TestCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, l->M, all));
   for (PetscInt i = l->first; i < l->first + l->n; i++)
     for (PetscInt j = 0; j < l->M; j++) {
@@ -71,7 +70,6 @@ static void CheckClosedForm(const OffsetTable *t, const char kernel[], const cha
       for (int c = 0; c < 4; c++)
         worst[is] = PetscMax(worst[is], PetscAbsReal(found[c] - C[c]) * f->set.nu * (is ? r * r * r * r : 1));
     }
-  TestCall(PetscFree(all));
   TestMost(2, worst);
   TestCall(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < near && (worst[0] > 1e-13) == (near > 1e-12) && worst[1] < bound && pairs > 100,
@@ -91,8 +89,7 @@ static void CheckWithin(const OffsetTable *t, const char kernel[], const char pl
   const NearField f = w.coupling->mobility->near;
   const PetscInt M = w.layout->M;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
-  PetscReal *all;
-  TestCall(PetscCalloc1(4 * M * M, &all));
+  PetscReal *all = TestReals(4 * M * M);
   TestCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, M, all));
   for (PetscInt i = 0; i < M && w.layout->n; i++)
     for (PetscInt j = 0; j < M; j++) {
@@ -107,7 +104,6 @@ static void CheckWithin(const OffsetTable *t, const char kernel[], const char pl
         worst[is] = PetscMax(worst[is], PetscAbsReal(f->set.nu * (found[c] - C[c]) - own));
       }
     }
-  TestCall(PetscFree(all));
   TestMost(2, worst);
   TestCall(MPI_Allreduce(MPI_IN_PLACE, &pairs, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
   CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 4000,

@@ -113,7 +113,7 @@ static void CheckPeriodicGrid(const OffsetTable *t) {
   Stokes stokes;
   Vec force, u, p;
   PetscScalar *a;
-  PetscReal *all, worst[2];
+  PetscReal worst[2];
   TestWorldCreate(&w, "-domain_cells 256,256 -domain_box 0,256,0,256 -vesicle_shape none -fluid_viscosity 1 "
                       "-scheme_type coupled " PERIODIC);
   const Grid g = w.fluid->grid;
@@ -125,13 +125,12 @@ static void CheckPeriodicGrid(const OffsetTable *t) {
   TestCall(VecRestoreArray(force, &a));
   TestCall(FluidRemoveMean(w.fluid, force));
   TestCall(StokesSolve(stokes, force, NULL, u, p));
-  TestCall(PetscMalloc1(2 * BOX_CELLS * BOX_CELLS, &all));
+  PetscReal *all = TestReals(2 * BOX_CELLS * BOX_CELLS);
   Gather(g, u, all);
   CompareGrid(t, all, worst);
   CHECK(worst[0] < 1e-4 && worst[1] < 1e-8,
         "a 256^2 periodic grid's response: from one entry to the next apart by %.1e, fourth differences by %.1e",
         worst[0], worst[1]);
-  TestCall(PetscFree(all));
   TestCall(StokesDestroy(&stokes));
   TestWorldDestroy(&w);
 }
@@ -227,13 +226,12 @@ static PetscReal Gap(const TestWorld *w, PetscInt v, PetscInt u) {
  */
 static void CheckReach(void) {
   TestWorld w;
-  PetscReal *C;
   PetscInt count[3] = {0, 0, 0}; /* near, far, wrong */
   TestWorldCreate(&w, EXACT "-scheme_type coupled -domain_cells 320,96 -domain_box 0,20,0,6 -domain_bc_x periodic "
                             "-fluid_inertia none -vesicle_count 9 -vesicle_semi_axes 0.3,0.5 -vesicle_markers 27 "
                             "-vesicle_center 0.2,1,2.1,1.4,4.6,1,4.2,3,9.8,4.4,9.2,2.2,12.9,3.8,17,1,19.3,1.9");
   const Layout l = w.layout;
-  TestCall(PetscCalloc1(4 * l->M * l->M, &C));
+  PetscReal *C = TestReals(4 * l->M * l->M);
   TestCall(NearFieldAdd(w.coupling->mobility->near, 1, PETSC_TRUE, 0, l->M, C));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt u = 0; u < l->bodies; u++) {
@@ -251,7 +249,6 @@ static void CheckReach(void) {
   CHECK(count[0] > 15 && count[1] > 40 && !count[2],
         "nine vesicles: %d pairs nearer than %d cells have C, %d others have none, %d are wrong", (int)count[0],
         NEAR_REACH, (int)count[1], (int)count[2]);
-  TestCall(PetscFree(C));
   TestWorldDestroy(&w);
 }
 

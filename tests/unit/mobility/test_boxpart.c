@@ -185,8 +185,9 @@ static PetscReal ApplyOffBy(BoxPart box) {
   const Layout l = box->markers->layout;
   const BoxTable *t = box->at;
   const PetscReal *X = box->markers->X;
-  PetscReal *F, *U, *a, *b, *sum, found[2] = {0, 0};
-  TestCall(PetscCalloc5(t->parts * l->M, &F, 2 * l->n, &U, 2 * t->rank, &a, t->parts * t->rank, &b, t->rank, &sum));
+  PetscReal found[2] = {0, 0};
+  PetscReal *F = TestReals(t->parts * l->M), *U = TestReals(2 * l->n), *a = TestReals(2 * t->rank),
+            *b = TestReals(t->parts * t->rank), *sum = TestReals(t->rank);
   for (PetscInt j = 0; j < t->parts * l->M; j++) F[j] = PetscSinReal(1 + j * j);
   TestCall(BoxPartApply(box, 1, F + t->parts * l->first, U));
   for (PetscInt j = 0; j < l->M; j++) {
@@ -200,7 +201,6 @@ static PetscReal ApplyOffBy(BoxPart box) {
     found[1] = PetscMax(found[1], PetscAbsReal(answer));
   }
   TestMost(2, found);
-  TestCall(PetscFree5(F, U, a, b, sum));
   return found[0] / found[1];
 }
 

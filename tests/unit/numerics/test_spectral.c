@@ -12,10 +12,10 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
 static void CheckDerivatives(PetscInt n) {
   static const int powers[] = {1, 2, 4};
   Spectral s;
-  PetscReal *x, *y, *a, *b, *c, *d;
   unsigned seed = 3;
   TestCall(SpectralCreate(n, &s));
-  TestCall(PetscCalloc6(2 * n, &x, 2 * n, &y, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
+  PetscReal *x = TestReals(2 * n), *y = TestReals(2 * n), *a = TestReals(2 * n), *b = TestReals(2 * n),
+            *c = TestReals(2 * n), *d = TestReals(2 * n);
   for (int p = 0; p < 3; p++) {
     PetscReal error = 0, size = 0;
     for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
@@ -49,7 +49,6 @@ static void CheckDerivatives(PetscInt n) {
   const PetscReal odd = Dot(2 * n, y, a) + Dot(2 * n, x, b), even = Dot(2 * n, y, c) - Dot(2 * n, x, d);
   CHECK(PetscAbsReal(odd) < 1e-12 * n, "%d markers: y.Dx + x.Dy = %.1e for random x, y", (int)n, odd);
   CHECK(PetscAbsReal(even) < 1e-11 * n, "%d markers: y.D4x - x.D4y = %.1e for random x, y", (int)n, even);
-  TestCall(PetscFree6(x, y, a, b, c, d));
   TestCall(SpectralDestroy(&s));
 }
 
@@ -57,10 +56,10 @@ static void CheckDerivatives(PetscInt n) {
 static void CheckKept(PetscInt n) {
   static const int powers[] = {1, 2, 4};
   Spectral s;
-  PetscReal *x, *a, *b, *c, *d;
   unsigned seed = 5;
   TestCall(SpectralCreate(n, &s));
-  TestCall(PetscCalloc5(2 * n, &x, 2 * n, &a, 2 * n, &b, 2 * n, &c, 2 * n, &d));
+  PetscReal *x = TestReals(2 * n), *a = TestReals(2 * n), *b = TestReals(2 * n), *c = TestReals(2 * n),
+            *d = TestReals(2 * n);
   for (PetscInt i = 0; i < 2 * n; i++) x[i] = TestRandom(&seed);
   for (int p = 0; p < 3; p++) {
     PetscReal error = 0, size = 0;
@@ -78,18 +77,17 @@ static void CheckKept(PetscInt n) {
     CHECK(error < 1e-12 * size && size > 0, "%d markers: derivative %d of a sum, error %.1e of %.1e", (int)n, powers[p],
           error, size);
   }
-  TestCall(PetscFree5(x, a, b, c, d));
   TestCall(SpectralDestroy(&s));
 }
 
 /* A shift of labels: exact on trigonometric curves, alone or in pairs; it keeps sums of squares of an odd number. */
 static void CheckShift(PetscInt n) {
   const PetscReal phi = 0.37;
-  PetscReal *x, *y, error = 0;
+  PetscReal error = 0;
   unsigned seed = 9;
   Spectral s;
   TestCall(SpectralCreate(n, &s));
-  TestCall(PetscCalloc2(2 * n, &x, 2 * n, &y));
+  PetscReal *x = TestReals(2 * n), *y = TestReals(2 * n);
   for (int each = 1; each <= 2; each++)
     for (PetscInt q = 0; q <= (n - 1) / 2; q++) {
       for (PetscInt k = 0; k < each * n; k++)
@@ -109,7 +107,6 @@ static void CheckShift(PetscInt n) {
   error = 0;
   for (PetscInt k = 0; k < 2 * n; k++) error = PetscMax(error, PetscAbsReal(y[k] - x[k]));
   if (n % 2) CHECK(error < 1e-13, "%d markers: and back, in place, to %.1e", (int)n, error);
-  TestCall(PetscFree2(x, y));
   TestCall(SpectralDestroy(&s));
 }
 

@@ -35,10 +35,10 @@ static void CheckSymmetric(PetscInt n) {
 /* Values at points give values at the markers that give them back, and a cosine is a cosine at the markers. */
 static void CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
   CurvePoints w;
-  PetscReal *x, *value, off = 0, wave = 0;
+  PetscReal off = 0, wave = 0;
   unsigned seed = 7;
   TestCall(CurvePointsCreate(open, n, points, &w));
-  TestCall(PetscCalloc2(2 * n, &x, 2 * points, &value));
+  PetscReal *x = TestReals(2 * n), *value = TestReals(2 * points);
   for (PetscInt i = 0; i < points; i++) {
     value[2 * i] = TestRandom(&seed);
     value[2 * i + 1] = points < 3 ? 1 : PetscCosReal(open ? PETSC_PI * (i + 0.5) / points : 2 * PETSC_PI * i / points);
@@ -55,7 +55,6 @@ static void CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
   }
   CHECK(off < 1e-13, "%d points on %d markers have their values again to %.1e", (int)points, (int)n, off);
   CHECK(wave < 1e-13, "and the first cosine is interpolated to %.1e", wave);
-  TestCall(PetscFree2(x, value));
   TestCall(CurvePointsDestroy(&w));
 }
 

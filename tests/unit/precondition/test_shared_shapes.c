@@ -119,9 +119,9 @@ static void Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const Pets
                      PetscScalar s[]) {
   const Membrane m = t->membrane;
   const PetscReal *X = t->coupling->markers->X + 2 * t->layout->start[v];
-  PetscReal *S, F[2 * N] = {0};
+  PetscReal F[2 * N] = {0};
   MembraneLaw law;
-  TestCall(PetscMalloc1(4 * N * N, &S));
+  PetscReal *S = TestReals(4 * N * N);
   TestCall(LayerSelf(&stokeslet, &t->coupling->mobility->near->set, m->spectral[v], N, X, NULL, S));
   TestCall(LawCreate(m, t->fluid->grid->h, v, v + 1, &law));
   LawPlace(law, 1, X);
@@ -133,7 +133,6 @@ static void Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const Pets
   }
   LawRows(law, V, sigma, s);
   TestCall(LawDestroy(&law));
-  TestCall(PetscFree(S));
 }
 
 /* All vesicles take the first one's shape, and each gets its own solution by it. */
@@ -224,7 +223,6 @@ static void CheckMemory(void) {
   TestWorld t;
   SharedShapes s, again;
   PetscBool failed, valid;
-  PetscReal *memory, *second;
   TestWorldCreate(&t, OPTIONS "-domain_cells 64,32 -domain_bc_x periodic -vesicle_reduced_area "
                               "0.7,0.8,0.9,0.7,0.8,0.9,0.7 -vesicle_area 1");
   const PetscInt size = SharedShapesMemorySize(t.layout);
@@ -232,7 +230,7 @@ static void CheckMemory(void) {
   TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &again));
   TestCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->count == 3, "three kinds of vesicles have three shapes, %d", (int)s->count);
-  TestCall(PetscMalloc2(size, &memory, size, &second));
+  PetscReal *memory = TestReals(size), *second = TestReals(size);
   SharedShapesGetMemory(s, memory);
   TestCall(SharedShapesSetMemory(again, memory, &valid));
   TestCall(SharedShapesFollow(again, &failed));
@@ -241,7 +239,6 @@ static void CheckMemory(void) {
   memory[1 + 2 * t.layout->M + 1] = 0; /* vesicle 1 after vesicle 0, whose edges are longer */
   TestCall(SharedShapesSetMemory(again, memory, &valid));
   CHECK(!valid, "a memory of other vesicles is refused");
-  TestCall(PetscFree2(memory, second));
   TestCall(SharedShapesDestroy(&again));
   TestCall(SharedShapesDestroy(&s));
   TestWorldDestroy(&t);

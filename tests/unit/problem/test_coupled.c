@@ -155,9 +155,9 @@ static void CheckMobility(const char name[], Problem *q, PetscInt v) {
   const MeanMobility mobility = q->s->preconditioner->mobility;
   const PetscInt n = 2 * LayoutCount(q->t.layout, v);
   const MarkerRange own = {q->t.layout->start[v], n / 2};
-  PetscReal *Mob, *part, most = 0, error, asymmetry = 0, apart = 0;
+  PetscReal most = 0, error, asymmetry = 0, apart = 0;
   TestCall(MeanMobilitySetUp(mobility, q->t.fluid->alpha));
-  TestCall(PetscMalloc2(n * n, &Mob, n * n, &part));
+  PetscReal *Mob = TestReals(n * n), *part = TestReals(n * n);
   TestCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
   MobilityError(q, v, Mob, &error);
   for (PetscInt c = 0; c < n; c++)
@@ -173,7 +173,6 @@ static void CheckMobility(const char name[], Problem *q, PetscInt v) {
   }
   for (PetscInt k = 0; k < n * n; k++) apart = PetscMax(apart, PetscAbsReal(Mob[k]));
   CHECK(apart == 0, "%s: three shares of Mob add up to it, %.1e", name, apart / most);
-  TestCall(PetscFree2(Mob, part));
 }
 
 /* With the near field: C is in the equations and in the preconditioner alike, and Mob of markers 14 h and more apart is
@@ -192,13 +191,12 @@ static void CheckNearField(const char box[], PetscReal a0, PetscReal most_error,
   if (q.s->preconditioner->mobility && !q.t.fluid->grid->free) {
     const PetscInt n = 2 * q.t.layout->M;
     const MarkerRange own = {0, n / 2};
-    PetscReal *Mob, error, most = 0;
-    TestCall(PetscMalloc1(n * n, &Mob));
+    PetscReal error, most = 0;
+    PetscReal *Mob = TestReals(n * n);
     TestCall(MeanMobilityAssemble(q.s->preconditioner->mobility, &own, &own, 0, 1, Mob));
     MobilityError(&q, 0, Mob, &error);
     for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(Mob[k]));
     CHECK(error < most_error * most, "%s, a0 = %g: Mob is E A^-1 E^T within %.1e", box, a0, error / most);
-    TestCall(PetscFree(Mob));
   }
   ProblemDestroy(&q);
 }
