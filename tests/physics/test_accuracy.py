@@ -13,9 +13,8 @@ from restarts import last_state, same_state
 
 pytestmark = pytest.mark.xdist_group("accuracy")  # its tests share runs
 
-BOX = {
-    (v, chi): found for v, chi, *found in REFERENCES["tank_treading_box"]["V, chi, angle over pi, frequency over rate"]
-}
+ROWS = REFERENCES["tank_treading_box"]["V, chi, angle over pi, frequency over rate"]
+BOX = {(v, chi): found for v, chi, *found in ROWS}
 
 CORRECTED = "-checkpoint_every 0 -output_every 100"
 BOXES = {
@@ -109,12 +108,15 @@ def least_gap(run, frame: int) -> float:
     return float(np.abs(first[:, None] - second).min())
 
 
+#: Two ellipses pressed together.
+PRESSED = "-flow_type extension -flow_rate -1 -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 "
+PRESSED += "-vesicle_center -0.55,0,0.55,0 -vesicle_angle 0 -vesicle_allow_close_markers -time_end 4"
+
+
 def test_film_between_pressed_vesicles(cached_run):
     """Two ellipses pressed together in extension, 1.2 h apart on 32^2 at the start, 0.44 h at t = 4: the gap is the same on
     the grid with half the cells' size to 2e-3, measured 7e-4, and thins like Reynolds' film, t^(-1/2)."""
-    scene = "-flow_type extension -flow_rate -1 -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 "
-    scene += "-vesicle_center -0.55,0,0.55,0 -vesicle_angle 0 -vesicle_bending 0.05 -time_step 0.05 -time_end 4 -output_every 1 "
-    scene += "-vesicle_markers 63 -vesicle_allow_close_markers"
+    scene = f"{PRESSED} -vesicle_bending 0.05 -time_step 0.05 -output_every 1 -vesicle_markers 63"
     gaps = []
     for n in (32, 64):
         run = cached_run(f"{CORRECTED} {BOXES['box'].format(n=n)} {scene}")
@@ -128,12 +130,9 @@ def test_film_between_pressed_vesicles(cached_run):
 
 @pytest.mark.parametrize("chi", [100, 1000])
 def test_film_between_soft_vesicles(chi, cached_run):
-    """The same at chi = 100, 1000 in long steps, where waves under tension once swung and drained the film to 0 at t = 4.3
-    and 3.5: the gap at t = 4 is that of half the step to .5 % (measured .1 %), no edge is corrected, length and area stay.
-    """
-    scene = "-flow_type extension -flow_rate -1 -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.8 "
-    scene += f"-vesicle_center -0.55,0,0.55,0 -vesicle_angle 0 -vesicle_bending {0.2345 / chi} -time_end 4 "
-    scene += "-vesicle_markers 45 -vesicle_allow_close_markers -time_step"
+    """The same at chi = 100, 1000 in long steps, where waves under tension may swing and drain the film: the gap at t = 4 is that
+    of half the step to .5 % (measured .1 %), no edge is corrected, length and area stay."""
+    scene = f"{PRESSED} -vesicle_bending {0.2345 / chi} -vesicle_markers 45 -time_step"
     long, short = (cached_run(f"{CORRECTED} {BOXES['box'].format(n=32)} {scene} {dt}") for dt in (0.1, 0.05))
     gaps = [run.series["gap"][-1] for run in (long, short)]
     print(gaps)

@@ -40,10 +40,8 @@ def test_a_vesicle_around_a_post(ratio, tmp_path):
 def test_a_vesicle_is_pushed_off_a_post_within(tmp_path):
     curves = tmp_path / "post.txt"
     curves.write_text(circle(0.3, center=(0.25, 0)))
-    options = (
-        f"{BOX} -time_step .01 -time_end .05 -obstacle_shape file -obstacle_file {curves} -vesicle_semi_axes .6,.6"
-    )
-    row = last(tmp_path / "run", f"{options} -contact_repulsion 100 -contact_repulsion_range .1")
+    options = f"{BOX} -time_step .01 -time_end .05 -obstacle_shape file -obstacle_file {curves}"
+    row = last(tmp_path, f"{options} -vesicle_semi_axes .6,.6 -contact_repulsion 100 -contact_repulsion_range .1")
     assert row["gap"] > 0.0505 and row["center_x"] > 0.0005 and row["energy_contact"] > 0, row
 
 
@@ -85,8 +83,5 @@ def test_a_heavy_vesicle_in_a_container(tmp_path):
 
 
 def test_with_inertia_the_load_of_a_container_that_moves_is_not_given(tmp_path):
-    options = f"{STILL} {BOX} {CIRCLES} -obstacle_rotation 0,1".replace(
-        "-fluid_inertia none", "-fluid_inertia unsteady"
-    )
-    row = last(tmp_path, options)
+    row = last(tmp_path, f"{STILL} {BOX} {CIRCLES} -obstacle_rotation 0,1".replace("inertia none", "inertia unsteady"))
     assert np.isnan(row["obstacle_torque_2"]) and row["obstacle_torque_1"] > 0

@@ -7,8 +7,7 @@ from harness import ROOT, run_petves
 from restarts import agree
 
 RATE = 0.326116
-FREE = "-domain_bc_x free -domain_bc_y free -scheme_order 2 "
-FREE += " -output_overwrite"
+FREE = "-domain_bc_x free -domain_bc_y free -scheme_order 2 -output_overwrite"
 THREE = f"{FREE} -domain_box -1,1,-1,1 -domain_cells 16,16 -flow_type shear -vesicle_count 3 -vesicle_markers 35"
 THREE += " -vesicle_center -1.5,.2,0,0,2,-.3 -vesicle_area .5 -vesicle_reduced_area .7 -time_step .1"
 THREE += " -vesicle_allow_close_markers -output_every .2"
@@ -24,9 +23,8 @@ def test_tank_treading_is_that_of_the_boundary_integral(tmp_path):
     found = []
     for parts in (1, 2):
         dt = 0.05 / RATE / parts
-        series = tank_treading(
-            tmp_path / str(parts), f"-time_step {dt!r} -time_end {14 / RATE!r} -output_every 99"
-        ).series
+        options = f"-time_step {dt!r} -time_end {14 / RATE!r} -output_every 99"
+        series = tank_treading(tmp_path / str(parts), options).series
         assert not series["nsolve"].any() and not series["div_max"].any() and not series["energy_kinetic"].any()
         found.append(np.array([series["inclination"][-1] / np.pi, series["frequency"][-1] / RATE]))
     assert (4 * found[1] - found[0]) / 3 == pytest.approx([0.122676, 0.319245], rel=5e-5)

@@ -6,35 +6,23 @@ import sys
 
 import numpy as np
 import pytest
-from harness import PETVES, ROOT, SANITIZE, Run, mpirun
+from harness import ROOT, SANITIZE, mpirun, run_petves
 
 from petves.measures import half_periods
 from petves.run import Run as Files
 from studies.common.curves import trigonometric
-from studies.gallery import (
-    bifurcation,
-    capillary,
-    constriction,
-    couette,
-    passing,
-    settling,
-    stenosis,
-    suspension,
-    tumbling,
-    vortices,
-)
+from studies.gallery import bifurcation, capillary, constriction, couette, passing
+from studies.gallery import settling, stenosis, suspension, tumbling, vortices
 from studies.gallery.page import SCENES, TEMPLATE, filled
 from studies.gallery.scene import least
 
 FILES = sorted((ROOT / "runs" / "gallery").glob("*.opts"))
 
 
-def run_file(name, folder, options="", ranks=1):
+def run_file(name, folder, options=""):
     """Run a file of runs/gallery as it is, but for the options given; return its series."""
-    words = ["-options_file", str(ROOT / "runs" / "gallery" / f"{name}.opts"), "-output_dir", str(folder)]
-    done = mpirun([PETVES, *words, "-output_every", "1e9", *options.split()], ranks, 300)
-    assert done.returncode == 0, f"{name}\n{done.stdout}\n{done.stderr}"
-    return Run(folder, done.returncode, done.stdout, done.stderr).series
+    file = f"-options_file {ROOT / 'runs' / 'gallery' / name}.opts -output_dir {folder} -output_every 1e9"
+    return run_petves(folder, f"{file} {options}").series
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -127,9 +115,8 @@ def test_couette(tmp_path):
     options = "-domain_cells 32,32 -time_step .1 -time_end .2"
     series = run_file("couette", tmp_path / "none", f"{couette.WHAT['none']} {options}")
     assert -series["obstacle_torque_1"][-1] == pytest.approx(couette.EXACT, rel=1e-5)
-    series = run_file(
-        "couette", tmp_path / "one", f"{couette.ONE} -domain_cells 32,32 -time_end 2 -vesicle_allow_close_markers true"
-    )
+    options = f"{couette.ONE} -domain_cells 32,32 -time_end 2 -vesicle_allow_close_markers true"
+    series = run_file("couette", tmp_path / "one", options)
     added = (-series["obstacle_torque_1"][-1] / couette.EXACT - 1) / 0.003 * np.pi * (0.45**2 - 0.2**2)
     assert 0.5 < added < 2
 
@@ -158,10 +145,8 @@ def test_reynolds(tmp_path):
 def test_capillary(tmp_path):
     """Fast flow in a narrow channel makes a parachute, slower flow in a wide one a slipper, which lags less."""
     found = {}
-    for what, options in (
-        ("parachute", "-flow_ca 40"),
-        ("slipper", "-time_step .2 -flow_half_width 2.5 -domain_box 0,8,-2.5,2.5 -domain_cells 48,30"),
-    ):
+    wide = "-time_step .2 -flow_half_width 2.5 -domain_box 0,8,-2.5,2.5 -domain_cells 48,30"
+    for what, options in (("parachute", "-flow_ca 40"), ("slipper", wide)):
         series = run_file("capillary", tmp_path / what, f"{options} -time_end 30")
         peak = 4 if what == "parachute" else 1
         outline = trigonometric(Files.read(tmp_path / what).markers[-1], 64)

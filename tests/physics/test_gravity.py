@@ -6,11 +6,10 @@ import pytest
 from harness import REFERENCES, ROOT, Run, run_petves
 from restarts import agree
 
-QUIET = "-output_overwrite"
-SETTLE = f"{QUIET} -options_file {ROOT / 'runs' / 'settling.opts'}"
+SETTLE = f"-options_file {ROOT / 'runs' / 'settling.opts'}"
 SINKS = REFERENCES["settling"]
 AREA = np.pi / 100
-CHANNEL = f"{QUIET} -domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -fluid_inertia none"
+CHANNEL = f"-domain_box 0,3,0,1 -domain_cells 96,32 -domain_bc_x periodic -fluid_inertia none"
 CHANNEL += f" -fluid_gravity 1,0 -vesicle_density_difference 1 -vesicle_area {AREA!r} -vesicle_center 1.5,.5"
 CHANNEL += " -vesicle_markers 45 -time_step 1e-4 -time_end 1e-3 -output_every 1"
 
@@ -87,7 +86,7 @@ def test_zero_flux(tmp_path):
 def test_heavy_vesicle_on_a_wall(tmp_path, ratio, thick):
     """It presses out the film under it and does not go through: half a cell and one cell of it are left, 1.6 % and .1 %
     (measured) more than on 64 cells, which is `thick`."""
-    scene = f"{QUIET} -fluid_inertia none -domain_box 0,1,0,1 -domain_bc_x periodic -fluid_gravity 0,-1"
+    scene = f"-fluid_inertia none -domain_box 0,1,0,1 -domain_bc_x periodic -fluid_gravity 0,-1"
     scene += f" -vesicle_density_difference 300 -vesicle_area {np.pi / 16!r} -vesicle_reduced_area .8 -vesicle_angle 0"
     scene += f" -vesicle_center .5,.35 -vesicle_bending .02 -vesicle_markers 45 -vesicle_viscosity_ratio {ratio}"
     scene += " -vesicle_allow_close_markers -time_step .04 -time_end 2 -output_every 2"
@@ -101,14 +100,12 @@ def test_heavy_vesicle_on_a_wall(tmp_path, ratio, thick):
 def test_box_without_walls_step_after_step(tmp_path, inertia):
     """The mean that is taken off is everywhere on the grid, and must not be left there for a later step: along x as along y
     for a vesicle turned with gravity."""
-    scene = (
-        f"{QUIET} -domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x periodic -domain_bc_y periodic -vesicle_area 1"
-    )
-    scene += f" -vesicle_reduced_area .7 -vesicle_markers 35 -vesicle_bending .03 -fluid_inertia {inertia} -vesicle_density_difference 2"
-    scene += " -vesicle_allow_close_markers -time_step .05 -time_end .3 -output_every 1"
-    tight = "-coupled_ksp_rtol 1e-11"
-    down = run_petves(tmp_path / "down", f"{scene} {tight} -fluid_gravity 0,-1 -vesicle_angle 0").series
-    along = run_petves(tmp_path / "along", f"{scene} {tight} -fluid_gravity 1,0 -vesicle_angle 90").series
+    scene = "-domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x periodic -domain_bc_y periodic -vesicle_area 1"
+    scene += f" -vesicle_reduced_area .7 -vesicle_markers 35 -vesicle_bending .03 -fluid_inertia {inertia}"
+    scene += " -vesicle_density_difference 2 -vesicle_allow_close_markers -time_step .05 -time_end .3 -output_every 1"
+    scene += " -coupled_ksp_rtol 1e-11"
+    down = run_petves(tmp_path / "down", f"{scene} -fluid_gravity 0,-1 -vesicle_angle 0").series
+    along = run_petves(tmp_path / "along", f"{scene} -fluid_gravity 1,0 -vesicle_angle 90").series
     assert along["center_x"][-1] == pytest.approx(-down["center_y"][-1], rel=1e-9)
 
 

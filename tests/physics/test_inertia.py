@@ -11,8 +11,6 @@ from studies.common.paper import POISEUILLE, RELAXATION
 from studies.inertia.runs import extents, moving_and_resting, poiseuille_options, relaxation_options
 from studies.speed_accuracy.scenes import Point, channel_options
 
-#: The scheme's own discretisation, which run_petves replaces by the paper's.
-CORRECTED = "-checkpoint_every 0"
 PERIODIC = "-domain_bc_x periodic -domain_bc_y periodic"
 CHANNEL = "-domain_box 0,2.5,-1,1 -domain_cells 60,48 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 "
 CHANNEL += "-vesicle_semi_axes 0.3,0.45 -vesicle_center 1.25,0.1 -output_every 10"
@@ -26,7 +24,7 @@ def words(options: dict[str, str]) -> str:
 def test_relaxation_is_that_of_unbounded_stokes_flow(box, tmp_path):
     """Bending energy and extents within 0.3 % at every time of the targets, h = R0/6 in a 2 x 2 box."""
     options = words(relaxation_options(1, 36, 0.01, box))
-    run = run_petves(tmp_path, f"{options} {CORRECTED}")
+    run = run_petves(tmp_path, f"{options}")
     found = extents(run.folder)
     for time, target in RELAXATION.items():
         np.testing.assert_allclose(found[time], target, rtol=3e-3, err_msg=f"t = {time}")
@@ -38,7 +36,7 @@ def test_relaxation_is_that_of_unbounded_stokes_flow(box, tmp_path):
 
 def test_migration_is_that_of_unbounded_stokes_flow(tmp_path):
     """Height of the centroid within 0.02 R0 while the vesicle migrates from R0 to 0.83 R0."""
-    run = run_petves(tmp_path, f"{words(poiseuille_options(28, 40, 6, 0.005, 1))} {CORRECTED}")
+    run = run_petves(tmp_path, f"{words(poiseuille_options(28, 40, 6, 0.005, 1))}")
     for time in (0.5, 1):
         height = np.interp(time, run.series["time"], run.series["center_y"])
         assert height == pytest.approx(POISEUILLE[time], abs=0.02)
@@ -51,7 +49,7 @@ def test_convection_is_galilean_invariant(tmp_path):
         for inertia in ("convective", "unsteady"):
             runs = []
             for name, options in moving_and_resting(n, inertia).items():
-                runs.append(run_petves(tmp_path / f"{n}_{inertia}_{name}", f"{words(options)} {CORRECTED}"))
+                runs.append(run_petves(tmp_path / f"{n}_{inertia}_{name}", f"{words(options)}"))
             found[n, inertia] = relative_difference(*runs)
     shape, velocity = found[64, "convective"]
     assert found[32, "convective"][0] > 3 * shape, "second order in h"
@@ -68,7 +66,7 @@ def test_migration_in_unsteady_flow_does_not_depend_on_the_grid(kernel, off, tmp
     rise = {16: 0.0924109, 24: 0.0928481}
     limit = (24**2 * rise[24] - 16**2 * rise[16]) / (24**2 - 16**2)
     options = words(channel_options(Point("coupled 3, exact", 4, dt=0.06)))
-    run = run_petves(tmp_path, f"{options} {CORRECTED} -scheme_order 3 -delta_type {kernel}")
+    run = run_petves(tmp_path, f"{options} -scheme_order 3 -delta_type {kernel}")
     assert run.series["center_y"][-1] - run.series["center_y"][0] == pytest.approx(limit, rel=off)
 
 
@@ -76,7 +74,7 @@ def test_migration_with_steps_below_the_lag(tmp_path):
     """h = 1/3, where a step is .64 of the lag: 5.2 % short; 8.5 % where markers took none of the grid's new velocity."""
     limit = 0.0931979
     options = channel_options(Point("coupled 3, exact", 3)) | {"-time_step": "0.03"}
-    run = run_petves(tmp_path, f"{words(options)} {CORRECTED} -scheme_order 3")
+    run = run_petves(tmp_path, f"{words(options)} -scheme_order 3")
     assert run.series["center_y"][-1] - run.series["center_y"][0] == pytest.approx(limit, rel=0.06)
 
 
@@ -85,7 +83,7 @@ def test_steps_far_below_the_lag_only_ever_lose_energy(tmp_path):
     lag, but no more than a quarter of its opposite: all of it drove a stiff membrane to half of its energy in 14 steps.
     """
     scene = "-vesicle_semi_axes 0.2,0.5 -domain_cells 96,96 -vesicle_bending 1 -time_step 6.1e-5 -time_end 8.54e-4"
-    series = run_petves(tmp_path, f"{scene} {CORRECTED} -scheme_order 3 -output_every 1").series
+    series = run_petves(tmp_path, f"{scene} -scheme_order 3 -output_every 1").series
     energy = series["energy_bending"] + series["energy_kinetic"]
     assert len(energy) == 15 and (np.diff(energy) < 0).all()
 
@@ -100,12 +98,9 @@ def relative_difference(one, two) -> tuple[float, float]:
     return np.abs(X - Y).max() / 0.366, np.abs(U - V).max() / np.abs(U).max()
 
 
-BOXES = {"periodic": PERIODIC, "channel": "-domain_bc_x periodic", "walls": ""}
-
-
 def test_ranks_agree_in_convective_flow(tmp_path):
     """1 and 3 ranks, to 1e-9 of the shape."""
-    options = f"-domain_cells 48,48 -domain_bc_x periodic -flow_type shear -flow_rate 20 -vesicle_angle 30 {CORRECTED} "
+    options = f"-domain_cells 48,48 -domain_bc_x periodic -flow_type shear -flow_rate 20 -vesicle_angle 30 "
     options += "-fluid_inertia convective -time_step 0.0005 -time_end 0.01 -coupled_ksp_rtol 1e-11"
     base = run_petves(tmp_path / "base", options).saved("vesicle/markers")
     ranks = run_petves(tmp_path / "ranks", options, 3).saved("vesicle/markers")
@@ -131,7 +126,7 @@ DEFAULTS = {
 @pytest.mark.parametrize("name", DEFAULTS)
 def test_default_model(name, tmp_path):
     options, model, said, speed = DEFAULTS[name]
-    options = f"{CHANNEL} {CORRECTED} {options} -time_step 0.01 -time_end 0.02 -view"
+    options = f"{CHANNEL} {options} -time_step 0.01 -time_end 0.02 -view"
     if "shear" in name or speed is None:
         options = options.replace("-flow_half_width 1 ", "").replace("-flow_type poiseuille", "", 1)
     run = run_petves(tmp_path, options)
@@ -149,7 +144,7 @@ def test_default_model(name, tmp_path):
 
 
 def test_adaptive_steps_respect_the_cfl_limit(tmp_path):
-    options = f"{CHANNEL} {CORRECTED} -flow_peak_velocity 2 -fluid_inertia convective -time_end 0.2 -time_step 0.1 "
+    options = f"{CHANNEL} -flow_peak_velocity 2 -fluid_inertia convective -time_end 0.2 -time_step 0.1 "
     run = run_petves(tmp_path, options + "-time_adapt error -time_adapt_tol 1e-2 -time_cfl_limit 0.4")
     assert 0.2 < run.summary["cfl_max"] <= 0.4
     assert run.series["dt"][1:].max() <= 0.4 * (2 / 48) / 1.9
@@ -158,7 +153,7 @@ def test_adaptive_steps_respect_the_cfl_limit(tmp_path):
 @pytest.mark.parametrize("inertia", ["none", "unsteady"])
 def test_adaptive_steps_start_on_a_coarse_grid(inertia, tmp_path):
     """The first steps put edges right that are off from the start, by more than the tolerance whatever the step."""
-    options = f"{PERIODIC} {CORRECTED} -domain_box -2,2,-2,2 -domain_cells 64,64 -time_step 0.01 -time_end 0.05 "
+    options = f"{PERIODIC} -domain_box -2,2,-2,2 -domain_cells 64,64 -time_step 0.01 -time_end 0.05 "
     run = run_petves(tmp_path, f"{options} -time_adapt error -time_adapt_tol 3e-5 -fluid_inertia {inertia}")
     assert run.series["time"][-1] == pytest.approx(0.05)
     assert abs(run.series["length_error"][-1] - run.series["length_error"][3]) < 1e-5
@@ -166,7 +161,7 @@ def test_adaptive_steps_start_on_a_coarse_grid(inertia, tmp_path):
 
 def test_cfl_number_that_grows_stops_the_run(tmp_path):
     """A stiff vesicle's own flow: nothing moves at first, then the CFL number is above the limit."""
-    options = f"-domain_cells 32,32 {CORRECTED} -fluid_viscosity 0.1 -vesicle_bending 1 -vesicle_semi_axes 0.15,0.6 "
+    options = f"-domain_cells 32,32 -fluid_viscosity 0.1 -vesicle_bending 1 -vesicle_semi_axes 0.15,0.6 "
     run = run_petves(tmp_path, options + "-fluid_inertia convective -time_step 0.1 -time_end 1", good=False)
     assert run.status == 2 and "-time_cfl_limit" in run.errors[0] and "at most" in run.errors[0]
     assert (run.folder / "checkpoint.h5").exists()
@@ -176,8 +171,8 @@ def test_cfl_number_that_grows_stops_the_run(tmp_path):
 def test_sparse_markers_with_inertia(inertia, tmp_path):
     """With inertia the fluid passes between markers more than 2 cells apart: a warning names a number that is enough."""
     scene = f"-domain_box -2,2,-2,2 -domain_cells 192,192 -time_end 0 -fluid_inertia {inertia} -vesicle_markers"
-    first = run_petves(tmp_path / "a", f"{scene} 45 {CORRECTED}")
+    first = run_petves(tmp_path / "a", f"{scene} 45")
     found = re.search(r"warning: 45 markers of vesicle 1 .*take -vesicle_markers (\d+)", first.stdout)
     assert (found is not None) == (inertia == "unsteady")
     if found:
-        assert "passes between" not in run_petves(tmp_path / "b", f"{scene} {found[1]} {CORRECTED}").stdout
+        assert "passes between" not in run_petves(tmp_path / "b", f"{scene} {found[1]}").stdout

@@ -11,19 +11,15 @@ from restarts import at_step
 
 def lattice(posts, radius=0.25, shift=0.5):
     """Posts in a periodic square, a unit and 16 cells for each, rows shifted."""
-    return (
-        f"{PERIODIC} -flow_type uniform -domain_box 0,{posts},0,{posts} -domain_cells {16 * posts},{16 * posts} "
-        f"-obstacle_shape posts -obstacle_lattice {posts},{posts} -obstacle_radius {radius} -obstacle_shift {shift}"
-    )
+    box = f"{PERIODIC} -flow_type uniform -domain_box 0,{posts},0,{posts} -domain_cells {16 * posts},{16 * posts}"
+    return f"{box} -obstacle_shape posts -obstacle_lattice {posts},{posts} -obstacle_radius {radius} -obstacle_shift {shift}"
 
 
 def test_factor_by_modes(tmp_path):
     """Each post's own block and a few waves on it give the flow that the dense block gives, in a few iterations however
     many posts there are."""
-    posts = {
-        (n, factor): last(tmp_path / f"{n}{factor}", f"{STILL} {lattice(n)} -obstacle_factor {factor}")
-        for n, factor in ((4, "dense"), (4, "modes"), (8, "modes"))
-    }
+    ways = ((4, "dense"), (4, "modes"), (8, "modes"))
+    posts = {(n, way): last(tmp_path / f"{n}{way}", f"{STILL} {lattice(n)} -obstacle_factor {way}") for n, way in ways}
     dense, modes = posts[4, "dense"], posts[4, "modes"]
     two = last(tmp_path / "two", f"{STILL} {lattice(4)}", ranks=2)
     assert two["obstacle_force_x"] == pytest.approx(dense["obstacle_force_x"], rel=1e-13), "posts half a period apart"
@@ -55,13 +51,12 @@ def test_direct_ranks_and_restart_with_modes(tmp_path):
 
 def test_adaptive_steps_with_inertia(tmp_path):
     """Steps of many sizes: the factors of earlier ones serve, and a restart has the same bits."""
-    options = (
-        f"{POST} -fluid_inertia unsteady -time_adapt error -time_adapt_tol 1e-3 -time_step .01 -checkpoint_every 20"
-    )
-    whole = run_petves(tmp_path / "whole", f"{options} -time_end .6 -log_view :{tmp_path / 'log'}").series
+    options = f"{POST} -fluid_inertia unsteady -time_adapt error -time_adapt_tol 1e-3 -time_step .01 -time_end .6"
+    options += " -checkpoint_every 20"
+    whole = run_petves(tmp_path / "whole", f"{options} -log_view :{tmp_path / 'log'}").series
     made = re.search(r"FactorObstacles +(\d+)", (tmp_path / "log").read_text())[1]
     assert int(made) < 0.6 * len(whole["dt"]) and whole["coupled_its"][2:].mean() <= 4, "made for half of the steps"
     again = f"-restart {tmp_path / 'whole' / at_step(tmp_path / 'whole', 20)}"
-    rest = run_petves(tmp_path / "rest", f"{options} -time_end .6 {again}").series
+    rest = run_petves(tmp_path / "rest", f"{options} {again}").series
     for column in ("center_x", "gap", "obstacle_force_x", "obstacle_torque_1", "coupled_its"):
         assert rest[column][-1] == whole[column][-1]

@@ -18,12 +18,9 @@ from petves.views.plot import draw_members, new_figure, plot_run
 from petves.views.report import report
 from petves.views.words import scene_in_words
 
-PACKED = (
-    f""
-    "-domain_box 0,6,0,3 -domain_cells 96,48 -domain_bc_x periodic -fluid_inertia none -flow_type shear -vesicle_markers 24 "
-    "-vesicle_packing .4 -time_step .05 -time_end 0 -vesicle_mixture .75,.25 -vesicle_area .3,.15 "
-    "-vesicle_reduced_area .7,.9 -vesicle_bending .01,.04"
-)
+PACKED = "-domain_box 0,6,0,3 -domain_cells 96,48 -domain_bc_x periodic -fluid_inertia none -flow_type shear"
+PACKED += " -vesicle_markers 24 -vesicle_packing .4 -time_step .05 -time_end 0 -vesicle_mixture .75,.25"
+PACKED += " -vesicle_area .3,.15 -vesicle_reduced_area .7,.9 -vesicle_bending .01,.04"
 
 
 def test_packing_is_the_same_on_all_ranks(tmp_path):
@@ -49,10 +46,8 @@ def test_number_and_fraction_give_the_area(tmp_path):
 
 def test_bending_of_each(tmp_path):
     """Energies go by each vesicle's own c_b; a pair with its stiffnesses exchanged is the mirror image."""
-    pair = (
-        "-fluid_inertia none -vesicle_count 2 -vesicle_semi_axes .2,.4 -vesicle_center -.5,0,.5,0 "
-        "-time_step .1 -time_end .3 -vesicle_bending "
-    )
+    pair = "-fluid_inertia none -vesicle_count 2 -vesicle_semi_axes .2,.4 -vesicle_center -.5,0,.5,0"
+    pair += " -time_step .1 -time_end .3 -vesicle_bending "
     one, two = (run_petves(tmp_path / name, pair + c).series for name, c in (("a", ".01,.1"), ("b", ".1,.01")))
     assert one["energy_bending_2"][0] / one["energy_bending_1"][0] == pytest.approx(10, rel=1e-12)
     assert one["energy_bending_2"][-1] / one["energy_bending_1"][-1] < 9.97  # and so do the forces
@@ -61,10 +56,12 @@ def test_bending_of_each(tmp_path):
 
 
 MANY = (
-    "-scheme_type split -domain_box 0,9,0,6 -domain_cells 96,64 -domain_bc_x periodic -flow_type shear -flow_center_y 3 "
-    "-vesicle_packing .25 -vesicle_packing_type lattice -vesicle_angle 30 -vesicle_count 42 -vesicle_reduced_area .8 -time_step .01 "
-    "-output_every .02 -checkpoint_every 2"
+    "-scheme_type split -domain_box 0,9,0,6 -domain_cells 96,64 -domain_bc_x periodic -flow_type shear -flow_center_y 3"
 )
+MANY += (
+    " -vesicle_packing .25 -vesicle_packing_type lattice -vesicle_angle 30 -vesicle_count 42 -vesicle_reduced_area .8"
+)
+MANY += " -time_step .01 -output_every .02 -checkpoint_every 2"
 
 
 def rows(folder):
@@ -96,9 +93,8 @@ def test_many_have_a_file_of_their_own(whole):
     np.testing.assert_allclose(each["center_x"].mean(1), run.series["center_x"], rtol=1e-12)
     np.testing.assert_array_equal(each["inclination"][:, 0], run.series["inclination"])
     assert np.isfinite(each["gap"]).all() and (each["gap"] > 0).all()
-    np.testing.assert_allclose(
-        each["gap"].min(1), run.series["gap"], rtol=0.02
-    )  # of polygons where they are half an edge apart
+    of_polygons = each["gap"].min(1)  # where they are half an edge apart
+    np.testing.assert_allclose(of_polygons, run.series["gap"], rtol=0.02)
 
 
 def test_gap_of_each(tmp_path):
@@ -127,9 +123,8 @@ def test_python_has_each(whole):
 
 def test_images_are_cut_at_the_seam(tmp_path):
     """A vesicle that has left a periodic box twice over is drawn in it, on both sides of the seam where it lies on it."""
-    run = Files.read(
-        run_petves(tmp_path, "-domain_bc_x periodic -vesicle_semi_axes .2,.3 -vesicle_center 4.95,0 -time_end 0").folder
-    )
+    options = "-domain_bc_x periodic -vesicle_semi_axes .2,.3 -vesicle_center 4.95,0 -time_end 0"
+    run = Files.read(run_petves(tmp_path, options).folder)
     left, right = sorted(run.images_of(run.outline(0)), key=lambda points: points[:, 0].mean())
     assert left[:, 0].mean() == pytest.approx(-1.05, abs=1e-2) and right[:, 0].mean() == pytest.approx(0.95, abs=1e-2)
     whole_box = {path.name for path in plot_run(tmp_path)}

@@ -9,10 +9,8 @@ from studies.common.paper import SHEAR_FREE
 from studies.time import runs as study
 from studies.time.page import step_for
 
-FREE = (
-    "-domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 32,32 "
-    "-output_every 1e9 -checkpoint_every 0"
-)
+FREE = "-domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 32,32"
+FREE += " -output_every 1e9 -checkpoint_every 0"
 
 
 def vesicle(reduced_area: float, chi: float, angle: float = 17) -> str:

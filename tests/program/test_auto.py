@@ -14,9 +14,8 @@ from studies.speed_accuracy import unseen
 CALIBRATION = ROOT / "docs" / "speed_accuracy" / "calibration.csv"
 WANTED = (0.1, 1e-2, 1e-3, 1e-4)
 BOX = "-domain_box 0,8,0,8 -flow_type shear -flow_center_y 4 -vesicle_center 4,4 -vesicle_angle 20 -fluid_inertia none"
-REST = (
-    "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none"
-)
+REST = "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -domain_bc_x periodic -domain_bc_y periodic"
+REST += " -fluid_inertia none"
 QUIET = "-output_every 1000 -checkpoint_every 0"
 
 
@@ -28,11 +27,8 @@ def radius(reduced_area: float) -> float:
 def measured(table: str, value: str) -> float:
     """Worst error of a table of the calibration at a value."""
     with CALIBRATION.open() as file:
-        errors = [
-            float(row["error"])
-            for row in csv.DictReader(file)
-            if row["table"] == table and float(row["value"]) == float(value)
-        ]
+        rows = [row for row in csv.DictReader(file) if row["table"] == table and float(row["value"]) == float(value)]
+        errors = [float(row["error"]) for row in rows]
     assert errors, (table, value)
     return max(errors)
 
@@ -87,9 +83,8 @@ def test_tank_treading_within_the_wanted_error(wanted, cells, reduced_area, chi,
 def test_shape_at_rest_within_the_wanted_error(wanted, tmp_path):
     """Energy of the shape at rest, V = 0.7, against the boundary integral's."""
     end = 20 * radius(0.7) ** 3 / 0.01
-    run = run_petves(
-        tmp_path, f"{REST} {QUIET} -vesicle_area 1 -vesicle_angle 90 -time_end {end} -scheme_auto {wanted}"
-    )
+    scene = f"{REST} {QUIET} -vesicle_area 1 -vesicle_angle 90"
+    run = run_petves(tmp_path, f"{scene} -time_end {end} -scheme_auto {wanted}")
     found = run.series["energy_bending"][-1] * radius(0.7) / 0.01
     print(f"{found / paper.REST[0.7][0] - 1:+.2e} in {len(run.series['step']) - 1} steps")
     assert found == pytest.approx(paper.REST[0.7][0], rel=wanted)
@@ -175,14 +170,11 @@ def test_grid_of_a_chosen_box_goes_by_its_own_walls(tmp_path):
 
 def test_box_that_is_the_question_stays(tmp_path):
     """A channel, gravity, posts and a packing keep the box they have; its grid goes by vesicles and walls."""
-    for number, scene in enumerate(
-        (
-            "-flow_type poiseuille -flow_half_width 1",
-            "-fluid_gravity 0,-1 -vesicle_density_difference 1",
-            "-obstacle_shape posts -obstacle_center 0.7,0.7 -domain_bc_x periodic",
-            "-vesicle_packing 0.3 -vesicle_count 2 -domain_bc_x periodic -vesicle_packing_gap 0.1",
-        )
-    ):
+    scenes = """-flow_type poiseuille -flow_half_width 1
+-fluid_gravity 0,-1 -vesicle_density_difference 1
+-obstacle_shape posts -obstacle_center 0.7,0.7 -domain_bc_x periodic
+-vesicle_packing 0.3 -vesicle_count 2 -domain_bc_x periodic -vesicle_packing_gap 0.1"""
+    for number, scene in enumerate(scenes.splitlines()):
         text = run_petves(tmp_path / f"{number}", f"{QUIET} {scene} -time_end 0 -scheme_auto 1e-2").stdout
         assert domain(text, "-domain_box") == [-1, 1, -1, 1] and "yours to give" in settings(text)["-domain_box"][1]
         assert "free" not in text and domain(text, "-domain_cells")[0] < 128
@@ -192,15 +184,14 @@ def test_box_that_is_the_question_stays(tmp_path):
 def test_grid_for_a_box(inertia, tmp_path):
     """The fewest square cells that are enough; with inertia more of them where a vesicle begins near a wall."""
     scene = (
-        f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5 -vesicle_area 1 "
-        f"-fluid_inertia {inertia}"
+        f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5 -vesicle_area 1"
     )
+    scene += f" -fluid_inertia {inertia} -time_end 0"
     cells = {}
     near = (1e-2, 0.5)
     for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), near, (1e-3, 0.6)):
-        text = run_petves(
-            tmp_path / f"{wanted}_{height}", f"{scene} -vesicle_center 3,{height} -time_end 0 -scheme_auto {wanted}"
-        ).stdout
+        chosen = f"-vesicle_center 3,{height} -scheme_auto {wanted}"
+        text = run_petves(tmp_path / f"{wanted}_{height}", f"{scene} {chosen}").stdout
         nx, ny = domain(text, "-domain_cells")
         beyond = inertia == "unsteady" and (wanted, height) == (1e-3, 0.6)
         assert 5 * nx == 12 * ny and ": enough\n" in text
@@ -219,9 +210,8 @@ def test_grid_for_a_box(inertia, tmp_path):
 def test_grid_goes_by_what_inertia_stands_for(peak, inertia, tmp_path):
     """-fluid_inertia auto in a channel has inertia by the Reynolds number, and so has the choice of the grid."""
     scene = f"{QUIET} -domain_box 0,12,0,6 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 3 -vesicle_area 1"
-    text = run_petves(
-        tmp_path, f"{scene} -vesicle_center 3,3 -flow_peak_velocity {peak} -time_end 0 -scheme_auto 0.01"
-    ).stdout
+    scene += f" -vesicle_center 3,3 -flow_peak_velocity {peak} -time_end 0 -scheme_auto 0.01"
+    text = run_petves(tmp_path, scene).stdout
     assert (" with inertia: enough" in text) == inertia and "TOO" not in text
     assert (domain(text, "-domain_cells")[1] > 40) == inertia
 
@@ -257,9 +247,8 @@ def test_grid_and_walls_are_what_was_measured(first, fluid, tmp_path):
 
 def test_walls_farther_than_measured(tmp_path):
     """Without the box part what the grid leaves of a wall goes on as h^2 over the gap, from the last that was measured."""
-    scene = (
-        f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -fluid_inertia unsteady -scheme_auto 0.1"
-    )
+    scene = f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -fluid_inertia unsteady"
+    scene += " -scheme_auto 0.1"
     low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 0.8
     text = run_petves(tmp_path, f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
     near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
@@ -270,12 +259,10 @@ def test_walls_farther_than_measured(tmp_path):
 def test_last_steps_are_of_one_size(tmp_path):
     """-time_adapt error does not end with a sliver of a step, and -time_adapt_max_step is kept."""
     for end in (0.1, 0.1234, 0.131):
-        run = run_petves(
-            tmp_path / f"{end}",
-            f"-domain_cells 32,32 {QUIET} -time_adapt error -time_adapt_max_step 0.01 -time_end {end}",
-        )
-        dt = run.series["dt"]
-        assert run.series["time"][-1] == pytest.approx(end, abs=1e-14)
+        scene = f"-domain_cells 32,32 {QUIET} -time_adapt error -time_adapt_max_step 0.01 -time_end {end}"
+        series = run_petves(tmp_path / f"{end}", scene).series
+        dt = series["dt"]
+        assert series["time"][-1] == pytest.approx(end, abs=1e-14)
         assert dt.max() <= 0.01 * (1 + 1e-12) and dt.max() > 0.005, "steps are -time_step times powers of sqrt(2)"
         assert dt[-1] > 0.49 * dt[-3], dt[-4:]
 
@@ -287,9 +274,8 @@ def test_compressed_start_within_the_wanted_error(tmp_path):
     """V = 0.65, chi = 100, start at -20 degrees: the vesicle wrinkles, and the steps that do elsewhere leave ten times the error."""
     scene = unseen.Scene("free", 1, 0.65, 100, -20, 0.5, 4)
     results = Results(tmp_path / "unseen.json")
-    exact = results.get(
-        Case("fine", scene.options() | unseen.FINE | words("-vesicle_markers 121 -time_end 3"), unseen.measure)
-    )
+    fine = scene.options() | unseen.FINE | words("-vesicle_markers 121 -time_end 3")
+    exact = results.get(Case("fine", fine, unseen.measure))
     for wanted in (1e-2, 1e-3):
         auto = scene.options() | words(f"-scheme_auto {wanted} -time_end 3")
         assert unseen.error(results.get(Case(f"{wanted}", auto, unseen.measure)), exact) < wanted

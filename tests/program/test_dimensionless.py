@@ -1,21 +1,15 @@
 """Flows by their dimensionless numbers, the red cell's outline, and curves of a file turned about their centroids."""
 
 import re
-import subprocess
-import sys
 
 import h5py
 import numpy as np
 import pytest
-from harness import ENVIRONMENT, PETVES, ROOT, mpirun, run_petves
+from harness import run_petves, run_tool
 from restarts import without_wall
 
 SMALL = f"-domain_cells 32,32 -domain_box -2,2,-2,2 -time_step 0.1 -time_end 0.1 -output_every 10"
 VIEW = re.compile(r"background flow: \w+, (?:rate|u_max) = (\S+): .* = (\S+) with R0 = (\S+), nu R0\^3/c_b = (\S+)\n")
-
-
-def options(run) -> dict[str, str]:
-    return dict(line.split(maxsplit=1) for line in (run.folder / "resolved.opts").read_text().splitlines())
 
 
 def markers(run) -> np.ndarray:
@@ -38,23 +32,19 @@ def spectral_measures(X: np.ndarray) -> tuple[float, float, complex]:
 
 def test_chi_is_the_rate_that_it_stands_for(tmp_path):
     """V = 0.7, unit area: R0 = 1/sqrt(pi V), rate = chi c_b/(nu R0^3)."""
-    scene = (
-        f"{SMALL} -flow_type shear -vesicle_area 1 -vesicle_reduced_area 0.7 -fluid_viscosity 2 -vesicle_bending 0.03"
-    )
+    scene = f"{SMALL} -flow_type shear -vesicle_area 1 -vesicle_reduced_area 0.7"
+    scene += " -fluid_viscosity 2 -vesicle_bending 0.03"
     chi = run_petves(tmp_path / "chi", f"{scene} -flow_chi 10 -view")
     rate = 10 * 0.03 / 2 * np.sqrt(np.pi * 0.7) ** 3
-    assert float(options(chi)["-flow_rate"]) == pytest.approx(rate, rel=1e-9)
+    assert float(chi.resolved["-flow_rate"]) == pytest.approx(rate, rel=1e-9)
     shown = [float(x) for x in VIEW.search(chi.stdout).groups()]
     assert shown == pytest.approx([rate, 10, 1 / np.sqrt(np.pi * 0.7), 10 / rate], rel=1e-5)
-    assert "-flow_chi" not in options(chi)
-    again = run_petves(tmp_path / "rate", f"{scene} -flow_rate {options(chi)['-flow_rate']}", 2)
+    assert "-flow_chi" not in chi.resolved
+    again = run_petves(tmp_path / "rate", f"{scene} -flow_rate {chi.resolved['-flow_rate']}", 2)
     first, second = chi.series, again.series
     assert np.max(np.abs(first["inclination"] - second["inclination"])) < 1e-10
-    done = mpirun(
-        [PETVES, "-options_file", str(chi.folder / "resolved.opts"), "-output_dir", str(tmp_path / "again")], 1
-    )
-    assert done.returncode == 0, done.stderr
-    assert without_wall(tmp_path / "again" / "series.csv") == without_wall(chi.folder / "series.csv")
+    run_petves(tmp_path / "again", ["-options_file", chi.folder / "resolved.opts"])
+    assert without_wall(tmp_path / "again") == without_wall(chi.folder)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +55,7 @@ def test_numbers_go_by_the_largest_vesicle(flow, power, name, tmp_path):
     """Circles of radius .3 and .4."""
     two = "-vesicle_count 2 -vesicle_center -1,0,1,0 -vesicle_semi_axes 0.3,0.3,0.4,0.4 -fluid_inertia none"
     run = run_petves(tmp_path / "run", f"{SMALL} {two} -flow_type {flow} -time_end 0 -view")
-    assert float(options(run)[name]) == pytest.approx(3 * 0.01 / 0.4**power, rel=1e-9)
+    assert float(run.resolved[name]) == pytest.approx(3 * 0.01 / 0.4**power, rel=1e-9)
     assert float(VIEW.search(run.stdout)[2]) == pytest.approx(3, rel=1e-5)
 
 
@@ -99,7 +89,7 @@ def test_red_cells_of_two_kinds_in_shear(tmp_path):
     kinds = "-vesicle_mixture 0.7,0.3 -vesicle_area 0.5,0.8 -vesicle_bending 0.01,0.02 -vesicle_angle 90"
     run = run_petves(tmp_path / "run", f"{scene} {kinds} -flow_type shear -flow_chi 5 -time_end 0 -view")
     R0 = np.sqrt(0.8 / (np.pi * 0.65))
-    assert float(options(run)["-flow_rate"]) == pytest.approx(5 * 0.02 / R0**3, rel=1e-6)
+    assert float(run.resolved["-flow_rate"]) == pytest.approx(5 * 0.02 / R0**3, rel=1e-6)
     assert float(VIEW.search(run.stdout)[2]) == pytest.approx(5, rel=1e-5)
     with h5py.File(run.folder / "run.h5") as file:
         start, X = file.attrs["vesicle_start"], file["vesicle/markers"][0]
@@ -112,23 +102,11 @@ def test_red_cells_of_two_kinds_in_shear(tmp_path):
 def test_chi_can_be_swept(tmp_path):
     scene = f"{SMALL} -flow_type shear -vesicle_semi_axes 0.4,0.4"
     (tmp_path / "shared.opts").write_text(re.sub(r" (?=-[a-z])", "\n", scene) + "\n")
-    words = [
-        "sweep",
-        str(tmp_path / "s"),
-        "--options-file",
-        str(tmp_path / "shared.opts"),
-        "--vary",
-        "flow_chi",
-        "1",
-        "10",
-    ]
-    environment = {**ENVIRONMENT, "PETVES": PETVES, "PYTHONPATH": str(ROOT / "python"), "PATH": "/usr/bin:/bin"}
-    done = subprocess.run([sys.executable, "-m", "petves", *words], env=environment, capture_output=True, text=True)
+    words = f"sweep {tmp_path}/s --options-file {tmp_path}/shared.opts --vary flow_chi 1 10".split()
+    done = run_tool(*words)
     assert done.returncode == 0, done.stderr
-    rates = [
-        re.search(r"-flow_rate (\S+)", (tmp_path / "s" / f"flow_chi={chi}/resolved.opts").read_text())[1]
-        for chi in (1, 10)
-    ]
+    files = [tmp_path / "s" / f"flow_chi={chi}" / "resolved.opts" for chi in (1, 10)]
+    rates = [re.search(r"-flow_rate (\S+)", file.read_text())[1] for file in files]
     assert float(rates[1]) == pytest.approx(10 * float(rates[0]), rel=1e-12)
 
 
@@ -136,11 +114,8 @@ def test_chi_can_be_swept(tmp_path):
 def test_biconcave_is_the_red_cell_s_outline(given, V, tmp_path):
     """Area, reduced area, symmetry, and with the cell's own V the profile of Evans and Fung: .207 of its radius thick in the
     middle, thickest, .656, at .77 of it."""
-    run = run_petves(
-        tmp_path / "run",
-        f"{SMALL} -vesicle_shape biconcave {given} -vesicle_area 0.9 -vesicle_markers 131 -vesicle_allow_close_markers -time_end 0",
-    )
-    X = markers(run)
+    scene = f"{SMALL} -vesicle_shape biconcave {given} -vesicle_area 0.9 -vesicle_markers 131 -time_end 0"
+    X = markers(run_petves(tmp_path / "run", f"{scene} -vesicle_allow_close_markers"))
     area, length, centroid = spectral_measures(X)
     assert area == pytest.approx(0.9, rel=1e-8) and 4 * np.pi * area / length**2 == pytest.approx(V, rel=1e-7)
     assert abs(centroid) < 1e-7
@@ -199,9 +174,7 @@ def test_curve_file_as_programs_write_it(tmp_path):
     np.savetxt(tmp_path / "plain.txt", points[:-1], fmt="%.17g")
     np.savetxt(tmp_path / "closed.txt", points, fmt="%.17g", header="9 " * 2000)
     np.savetxt(tmp_path / "table.txt", points[:-1], fmt="%.17g", delimiter=",", header="x,y", comments="")
-    plain, closed, table = (
-        markers(run_petves(tmp_path / name, f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path / name}.txt"))
-        for name in ("plain", "closed", "table")
-    )
+    scene, names = f"{SMALL} -vesicle_shape file -vesicle_file {tmp_path}", ("plain", "closed", "table")
+    plain, closed, table = (markers(run_petves(tmp_path / name, f"{scene}/{name}.txt")) for name in names)
     np.testing.assert_array_equal(plain, closed)
     np.testing.assert_array_equal(plain, table)

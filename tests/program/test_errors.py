@@ -24,6 +24,7 @@ def bump(height: float, waves: int = 1) -> list[str]:
     return [f"{0.8 * np.cos(a):.15g} {-1 + height * abs(np.sin(waves * a)):.15g}" for a in t]
 
 
+AROUND = np.pi * np.arange(60) / 30
 CIRCLE = circle(20)
 CURVES = {
     "circle": CIRCLE,
@@ -51,10 +52,7 @@ CURVES = {
     "above a line": [*(f"{0.1 * k - 1:.15g} 0" for k in range(21)), "", *circle(20, 0.2, 0.5)],
     "nested": [*circle(20)[::-1], "", *circle(20, 0.8)[::-1]],
     "sliding line": ["# velocity 1 0", *(f"{0.1 * k - 1:.15g} 0" for k in range(21))],
-    "long ellipse": [
-        "# rotation 30",
-        *(f"{0.8 * np.cos(a):.15g} {0.2 * np.sin(a):.15g}" for a in np.pi * np.arange(60) / 30),
-    ],
+    "long ellipse": ["# rotation 30", *(f"{0.8 * np.cos(a):.15g} {0.2 * np.sin(a):.15g}" for a in AROUND)],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
 }
 
@@ -168,10 +166,9 @@ def test_stray_word_alone(tmp_path, monkeypatch):
     """No file, scene or tool: the default scene is not run."""
     monkeypatch.chdir(tmp_path)
     done = mpirun([PETVES, "my.opts"], 2)
-    line = (
-        'petves: error: "my.opts": no option, file, scene or command; allowed: -name value, or what petves help lists'
-    )
-    assert done.returncode == 1 and without_mpirun(done.stderr) == [line] and not (tmp_path / "out").exists()
+    line = '"my.opts": no option, file, scene or command; allowed: -name value, or what petves help lists'
+    assert done.returncode == 1 and without_mpirun(done.stderr) == [f"petves: error: {line}"]
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
@@ -211,21 +208,14 @@ def test_command_line_wins_over_files_over_environment(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "inner.opts").write_text("-vesicle_angle 3\n-output_dir 'out/a # b'  # a comment\n")
     (tmp_path / "outer.opts").write_text("-options_file inner.opts\n-fluid_viscosity 2\n-vesicle_bending 0.02\n")
-    words = "-time_end 0.01 -vesicle_bending 0.03 -options_file outer.opts -domain_cells 16,16"
-    done = mpirun(
-        [PETVES, *words.split()], 1, PETSC_OPTIONS="-fluid_viscosity 3 -time_end 9 -vesicle_angle 4 -time_step 0.01"
-    )
+    words = "-time_end 0.01 -vesicle_bending 0.03 -options_file outer.opts -domain_cells 16,16".split()
+    surroundings = "-fluid_viscosity 3 -time_end 9 -vesicle_angle 4 -time_step 0.01"
+    done = mpirun([PETVES, *words], 1, PETSC_OPTIONS=surroundings)
     assert done.returncode == 0, done.stderr
     read = (tmp_path / "out" / "a # b" / "resolved.opts").read_text().splitlines()
     options = dict(line.split(maxsplit=1) for line in read if line.startswith("-"))
-    wanted = {
-        "-time_end": 0.01,
-        "-vesicle_bending": 0.03,
-        "-fluid_viscosity": 2,
-        "-vesicle_angle": 3,
-        "-time_step": 0.01,
-    }
-    assert {name: float(options[name]) for name in wanted} == wanted
+    wanted = dict(time_end=0.01, vesicle_bending=0.03, fluid_viscosity=2, vesicle_angle=3, time_step=0.01)
+    assert {name: float(options[f"-{name}"]) for name in wanted} == wanted
 
 
 @pytest.mark.parametrize("name", ["series.csv", "run.h5", "run.xmf", "resolved.opts", "checkpoint.h5", "summary.json"])
@@ -263,9 +253,8 @@ def test_vesicle_carried_into_a_wall_stops_the_run(tmp_path):
     """Extension carries the vesicle away from the centre of the flow, to the wall at x_max."""
     options = f"{PAPER} -domain_cells 48,48 -flow_type extension -vesicle_center 0.4,0 -time_step 0.02 -time_end 5"
     run = run_petves(tmp_path / "out", options, ranks=2, good=False)
-    summary, series = leaves_files(
-        run, r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box"
-    )
+    reason = r"vesicle 1.*wall x_max = 1.*needs 3 after step \d+, time [\d.]+; try a larger -domain_box"
+    summary, series = leaves_files(run, reason)
     step, time = re.search(r"after step (\d+), time ([\d.]+);", summary["reason"]).groups()
     assert int(step) == series["step"][-1] + 1 and float(time) == pytest.approx(series["time"][-1] + 0.02, rel=1e-5)
     assert 2 <= series["step"][-1] < 100

@@ -2,24 +2,18 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 
 import pytest
-from harness import ENVIRONMENT, PETVES, ROOT, read_series, run_petves
+from harness import ROOT, read_series, run_petves, run_tool
 
 import petves
 from petves.program import scene_file, scene_files
 
 CELL = dict(radius=3e-6, bending=2e-19, viscosity=1.2e-3, rate=100.0)
-
-
-def tool(*words, folder=None, **environment):
-    """Run python3 -m petves; return the finished process."""
-    paths = {"PETVES": PETVES, "PYTHONPATH": str(ROOT / "python"), **environment}
-    words = [sys.executable, "-m", "petves", *map(str, words)]
-    return subprocess.run(words, env={**os.environ, **ENVIRONMENT, **paths}, capture_output=True, text=True, cwd=folder)
 
 
 def test_numbers_are_those_of_the_run(tmp_path):
@@ -28,16 +22,15 @@ def test_numbers_are_those_of_the_run(tmp_path):
     assert found["lambda_t"] == pytest.approx(1.2e-3 * 2.7e-17 / 2e-19) and found["chi"] == pytest.approx(16.2)
     assert found["Re"] == pytest.approx(100 * 9e-12 / 1.2e-6) and found["V"] == 0.7 and found["viscosity_ratio"] == 1
     words = ["--radius", 3e-6, "--bending", 2e-19, "--viscosity", 1.2e-3, "--rate", 100]
-    done = tool("numbers", *words)
+    done = run_tool("numbers", *words)
     assert done.returncode == 0 and "chi = 16.2, Re = 0.00075" in done.stdout.splitlines()[0]
     (tmp_path / "cell.opts").write_text(done.stdout)
     run = run_petves(tmp_path / "run", f"-options_file {tmp_path}/cell.opts -time_end 0.001")
     summary, series = json.loads((run.folder / "summary.json").read_text()), read_series(run.folder / "series.csv")
     assert summary["reynolds"] == pytest.approx(found["Re"], rel=0.01)
     assert series["length"][0] == pytest.approx(2 * 3.14159265 * 3e-6, rel=1e-6)
-    assert (
-        f"-vesicle_bending {2e-19 / 1000:g}" in done.stdout.splitlines() and float(options["vesicle_bending"]) == 2e-22
-    )
+    assert f"-vesicle_bending {2e-19 / 1000:g}" in done.stdout.splitlines()
+    assert float(options["vesicle_bending"]) == 2e-22
     with petves.Simulation(**petves.numbers(**CELL, inside=6e-3, flow="extension")[0] | {"time_end": 0}) as sim:
         assert float(sim.options["vesicle_viscosity_ratio"]) == 5 and sim.options["flow_type"] == "extension"
 
@@ -57,25 +50,22 @@ def test_numbers_that_cannot_be(wrong, line):
 
 def test_scenes_run_by_name(tmp_path):
     assert scene_files()["shear"] == ROOT / "runs" / "shear.opts" and "gallery/stenosis" in scene_files()
-    done = tool("scenes")
+    done = run_tool("scenes")
     assert done.returncode == 0 and len(done.stdout.splitlines()) == len(list((ROOT / "runs").rglob("*.opts")))
-    assert any(
-        line.split() == "settling A heavy vesicle sinks in a box of four walls".split()
-        for line in done.stdout.splitlines()
-    )
-    done = tool("run", "free", "-time_end", 0.1, "-output_dir", "out", folder=tmp_path)
+    assert re.search("^ *settling +A heavy vesicle sinks in a box of four walls *$", done.stdout, re.M)
+    done = run_tool("run", "free", "-time_end", 0.1, "-output_dir", "out", folder=tmp_path)
     assert done.returncode == 0 and (tmp_path / "out" / "series.csv").is_file(), done.stderr
     (tmp_path / "shear").write_text("")
     assert scene_file("shear") == str(ROOT / "runs" / "shear.opts") and scene_file("-help") == "-help"
     assert scene_file(str(tmp_path / "shear")) == str(tmp_path / "shear")
-    assert "No such file" in tool("run", "sheer", folder=tmp_path).stderr
+    assert "No such file" in run_tool("run", "sheer", folder=tmp_path).stderr
 
 
 def test_scenes_of_an_installation_are_found(tmp_path):
     site = tmp_path / "lib" / "python3" / "dist-packages"
     shutil.copytree(ROOT / "python" / "petves", site / "petves", ignore=shutil.ignore_patterns("*.so"))
     shutil.copytree(ROOT / "runs", tmp_path / "share" / "petves" / "runs")
-    done = tool("scenes", folder=tmp_path, PYTHONPATH=str(site))
+    done = run_tool("scenes", folder=tmp_path, PYTHONPATH=str(site))
     assert "stirring" in done.stdout, done.stderr
     code = "from petves.program import scene_file; print(scene_file('stirring'))"
     done = subprocess.run(

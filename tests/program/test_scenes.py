@@ -13,13 +13,10 @@ from studies.reproduction.convergence import differences
 from studies.reproduction.scene_figures import keller_skalak
 
 SCENES = ("energy", "relax", "shear_convergence", "equilibrium", "poiseuille", "shear")
-RANKS = {f"{name}.opts": 1 for name in SCENES} | {
-    "default.opts": 2,
-    "two_vesicles.opts": 2,
-    "free.opts": 1,
-    "suspension.opts": 2,
+RANKS = {f"{name}.opts": 1 for name in (*SCENES, "free")}
+RANKS |= {
+    f"{name}.opts": 2 for name in ("default", "two_vesicles", "suspension", *(f"paper/{name}" for name in SCENES))
 }
-RANKS |= {f"paper/{name}.opts": 2 for name in SCENES}
 
 
 def run_file(name, folder, options="", ranks=1):
@@ -81,9 +78,8 @@ def test_tension_is_where_it_is_said_to_be(derivative, tmp_path):
 def test_option_files_are_read():
     """Comments and the output folder are left out; values keep their text."""
     options = option_file("shear")
-    assert (
-        options["-domain_box"] == "-4,12,0,8" and options["-flow_rate"] == "0.326116" and "-output_dir" not in options
-    )
+    assert options["-domain_box"] == "-4,12,0,8" and options["-flow_rate"] == "0.326116"
+    assert "-output_dir" not in options
 
 
 def test_ellipses_of_keller_and_skalak():
@@ -116,9 +112,8 @@ def test_differences_of_one_function_on_two_grids():
     slope = 0.5 * 2 * np.pi / 16 / 2**0.5 * 2.3**0.5  # of cos(turn), half an edge, in the L2 norm
     assert errors[0]["sigma_half"] == pytest.approx(slope, rel=0.03)
     moved = differences(_state(32, 33, 0.01), fine, 1 / 16)
-    perimeter = np.hypot(
-        *np.diff(np.vstack([_state(32, 33)["markers"], _state(32, 33)["markers"][:1]]), axis=0).T
-    ).sum()
+    points = _state(32, 33)["markers"]
+    perimeter = np.hypot(*(np.roll(points, -1, axis=0) - points).T).sum()
     assert moved["X"] == pytest.approx(0.01 * perimeter**0.5, rel=1e-6) and moved["Y"] < 1e-6
 
 

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import PETVES, ROOT, mpirun, run_petves
-from refusals import one_line
+from refusals import refused
 from restarts import frames
 
 TURNING = ["-flow_u", " -y*cos(t + 1)", "-flow_v", "x*cos(t + 1)"]  # a circle, by the angle sin(t + 1) - sin(1)
@@ -38,9 +38,8 @@ def test_a_path_at_second_order(bc, tmp_path):
     start = np.array([0.5, 0.1 - 0.3j, -0.5, 0.5])
     errors = []
     for dt in ("0.08", "0.04"):
-        scene = (
-            f"-domain_cells 16,16 -domain_bc_x {bc} -domain_bc_y {bc} -vesicle_shape none -time_end 2 -time_step {dt}"
-        )
+        scene = f"-domain_cells 16,16 -domain_bc_x {bc} -domain_bc_y {bc} -vesicle_shape none"
+        scene += f" -time_end 2 -time_step {dt}"
         files = ["-tracer_file", str(tmp_path / "points.txt"), "-tracer_grid", "2,1", "-output_dir", str(tmp_path / dt)]
         done = mpirun([PETVES, *scene.split(), *TURNING, *files], 1)
         assert done.returncode == 0, done.stderr
@@ -56,10 +55,8 @@ def test_a_vesicle_keeps_them(box, tmp_path):
     first = run_petves(tmp_path / "first", f"{SHEAR} {box} -time_end 0").saved("vesicle/markers", "run.h5")[0]
     middle, n = first.mean(axis=0), len(first)
     np.savetxt(tmp_path / "points.txt", np.concatenate([first, middle + 0.85 * (first - middle)]), fmt="%.17g")
-    run = run_petves(
-        tmp_path / "run", f"{SHEAR} {box} -tracer_file {tmp_path / 'points.txt'} -time_end 120 -output_every 20"
-    )
-    found = frames(run.folder)
+    more = f"-tracer_file {tmp_path / 'points.txt'} -time_end 120 -output_every 20"
+    found = frames(run_petves(tmp_path / "run", f"{SHEAR} {box} {more}").folder)
     for frame in range(1, len(found["time"])):
         curve, places = fine(found["vesicle/markers"][frame]), found["tracers/points"][frame]
         on = np.abs(curve - (places[:n, 0] + 1j * places[:n, 1])[:, None]).min(axis=1)
@@ -88,24 +85,19 @@ def test_what_is_refused(tmp_path):
     (tmp_path / "points.txt").write_text("0 0\n3 0\n")
     (tmp_path / "none.txt").write_text("# nothing\n")
     small = "-domain_cells 32,32 -time_step 0.01 -time_end 0.02"
+    numbers = "-tracer_grid: needs two numbers above 0; allowed: NX,NY of up to 1000000 points, or 0,0 for none"
     for words, needle in (
-        (
-            f"-tracer_file {tmp_path / 'points.txt'}",
-            "point 2 (3. 0.) is outside of the box; allowed: points in -domain_box",
-        ),
-        (f"-tracer_file {tmp_path / 'none.txt'}", "0 points; allowed: at least one"),
-        ("-tracer_file none", "-tracer_file none: cannot be opened"),
-        (
-            "-tracer_grid 3",
-            "-tracer_grid: needs two numbers above 0; allowed: NX,NY of up to 1000000 points, or 0,0 for none",
-        ),
-        ("-tracer_grid 70000,70000", "-tracer_grid: needs"),
-        ("-tracer_grid 3,0", "-tracer_grid: needs two numbers above 0"),
+        (f"file {tmp_path}/points.txt", "point 2 (3. 0.) is outside of the box; allowed: points in -domain_box"),
+        (f"file {tmp_path}/none.txt", "0 points; allowed: at least one"),
+        ("file none", "-tracer_file none: cannot be opened"),
+        ("grid 3", numbers),
+        ("grid 70000,70000", "-tracer_grid: needs"),
+        ("grid 3,0", numbers),
     ):
-        one_line(run_petves(tmp_path / "run", f"{small} {words}", good=False), needle)
+        refused(tmp_path / "run", f"{small} -tracer_{words}", needle)
     run_petves(tmp_path / "run", f"{small} -tracer_grid 2,2")
     restart = f"-restart {tmp_path / 'run' / 'checkpoint.h5'} -time_end 0.03"
-    one_line(run_petves(tmp_path / "run", f"{small} {restart} -tracer_grid 2,3", good=False), "-tracer_grid 2,3")
+    refused(tmp_path / "run", f"{small} {restart} -tracer_grid 2,3", "-tracer_grid 2,3")
 
 
 def test_what_the_tools_read(tmp_path):

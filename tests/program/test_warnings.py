@@ -36,18 +36,12 @@ def scene(kind: str, gap: float) -> str:
 @pytest.mark.parametrize("kind, ranks", [("pair", 2), ("image", 1), ("wall", 1)])
 def test_film_that_markers_do_not_resolve(kind, ranks, tmp_path):
     """45 markers are 0.0861 apart: a gap of half of that is warned of, with markers that do; 0.7 of it is not."""
-    who = {
-        "pair": "vesicle 1 and vesicle 2",
-        "image": "vesicle 1 and its periodic image",
-        "wall": "vesicle 1 and the wall x_min",
-    }
+    who = dict(pair="vesicle 2", image="its periodic image", wall="the wall x_min")[kind]
     ds = 0.0861
-    found = [
-        text
-        for text in warnings(tmp_path / "thin", scene(kind, 0.5 * ds) + " -vesicle_markers 45", ranks)
-        if "film" in text
-    ]
-    assert len(found) == 1 and f"the film between {who[kind]} is 0.51 marker spacings thick after step 1," in found[0]
+    found = warnings(tmp_path / "thin", scene(kind, 0.5 * ds) + " -vesicle_markers 45", ranks)
+    found = [text for text in found if "film" in text]
+    assert len(found) == 1
+    assert f"the film between vesicle 1 and {who} is 0.51 marker spacings thick after step 1," in found[0]
     wanted = int(re.search(r"try -vesicle_markers (\d+)$", found[0])[1])
     assert 89 <= wanted <= 95
     for name, gap, markers in (("wide", 0.7, 45), ("more", 0.5, wanted)):

@@ -36,9 +36,8 @@ def test_limit_stops_at_the_state_before(limit, column, tmp_path):
 
 def test_no_limit(tmp_path):
     """0 is no limit: the split scheme with a stiff membrane gains length without end."""
-    options = (
-        f"{PAPER} -domain_cells 32,32 -vesicle_bending 100 -time_step 0.03125 -time_end 0.09375 -limit_area_error 0"
-    )
+    options = f"{PAPER} -domain_cells 32,32 -vesicle_bending 100 -time_step 0.03125 -time_end 0.09375"
+    options += " -limit_area_error 0"
     run = run_petves(tmp_path / "run", f"{options} -limit_length_error 0 -limit_edge_ratio 0")
     assert np.abs(run.series["length_error"]).max() > 0.2
     stopped = run_petves(tmp_path / "stopped", options, good=False)
@@ -55,22 +54,21 @@ def test_failed_graded_start_leaves_the_first_state(tmp_path):
         assert not file["fluid/u"][:].any()
 
 
+PAIR = "-vesicle_count 2 -vesicle_semi_axes 0.2"
+
+
 @pytest.mark.parametrize(
     "options, who",
     [
-        ("-vesicle_count 2 -vesicle_semi_axes 0.2,0.5 -vesicle_center -0.25,0,0.25,0", "vesicles 1 and 2"),
+        (f"{PAIR},0.5 -vesicle_center -0.25,0,0.25,0", "vesicles 1 and 2"),
         ("-vesicle_semi_axes 0.05,0.6 -vesicle_bending 0", "parts of vesicle 1"),
-        (
-            "-domain_bc_x periodic -vesicle_count 2 -vesicle_semi_axes 0.2,0.4 -vesicle_center -0.75,0,0.75,0",
-            "vesicles 1 and 2",
-        ),
+        (f"-domain_bc_x periodic {PAIR},0.4 -vesicle_center -0.75,0,0.75,0", "vesicles 1 and 2"),
     ],
 )
 def test_contact_is_warned_of_once(options, who, tmp_path):
     """With the paper's scheme, which has no near field."""
-    run = run_petves(
-        tmp_path / "run", f"{PAPER} -domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01", ranks=2
-    )
+    options = f"{PAPER} -domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01"
+    run = run_petves(tmp_path / "run", options, ranks=2)
     lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
     assert len(lines) == 1 and who in lines[0] and "closer than 2 cells after step 1," in lines[0], run.stdout
 
@@ -119,9 +117,8 @@ def test_step_that_drains_a_film(tmp_path):
     assert run.series["gap"][-1] > 0 and len(run.series["gap"]) > 2
     adaptive = "-scheme_order 2 -time_adapt error -time_adapt_tol 0.1 -time_adapt_max_move 0 -time_adapt_max_step 0.3"
     exact = f"{PRESSED} -vesicle_bending 0.01 {adaptive} -time_step 0.3 -time_end 0.6 -output_every 1"
-    gaps = [
-        run_petves(tmp_path / str(limit), f"{exact} -limit_gap_loss {limit}").series["gap"] for limit in (0.5, 0.002)
-    ]
+    runs = [run_petves(tmp_path / str(limit), f"{exact} -limit_gap_loss {limit}") for limit in (0.5, 0.002)]
+    gaps = [run.series["gap"] for run in runs]
     kept = [(gap[1:] / gap[:-1]).min() for gap in gaps]
     assert gaps[0].max() < 0.25 * 7.7 / 45  # half an edge; 45 markers each
     assert kept[0] < 0.998 < kept[1] and len(gaps[1]) > len(gaps[0]), kept
@@ -129,10 +126,8 @@ def test_step_that_drains_a_film(tmp_path):
 
 def test_corner_is_warned_of_once(tmp_path):
     """2 cells from two walls that meet, and from one of them only; the box part of quasi-steady flow holds there."""
-    scene = (
-        "-fluid_inertia none -domain_cells 32,32 -domain_box 0,2,0,2 -vesicle_semi_axes 0.3,0.3 -vesicle_markers 45 "
-        "-time_step 1e-4 -time_end 3e-4"
-    )
+    scene = "-fluid_inertia none -domain_cells 32,32 -domain_box 0,2,0,2 -vesicle_semi_axes 0.3,0.3"
+    scene += " -vesicle_markers 45 -time_step 1e-4 -time_end 3e-4"
     for part, centre, count in (("false", "0.425,0.425", 1), ("false", "0.425,1", 0), ("true", "0.425,0.425", 0)):
         options = f"-coupling_box_part {part} -vesicle_center {centre} -output_overwrite"
         run = run_petves(tmp_path / "run", f"{scene} {options}")

@@ -1,7 +1,5 @@
 """How much a run writes: frames by default, their precision, and what the run says of it."""
 
-import re
-
 import h5py
 import numpy as np
 import pytest
@@ -20,9 +18,7 @@ def test_a_run_has_at_most_100_frames(end, every, count, tmp_path):
     """Without vesicles, at rest, in steps that the times saved are multiples of; the end is saved too."""
     options = f"-vesicle_shape none -domain_cells 8,8 -time_step {every / 2} -time_end {end} -view"
     run = run_petves(tmp_path / "run", options)
-    assert f"-output_every {every:g}\n" in re.sub(
-        r"(\.\d*?[1-9])0{5,}\d*", r"\1", (run.folder / "resolved.opts").read_text()
-    )
+    assert float(run.resolved["-output_every"]) == pytest.approx(every, rel=1e-9)
     times = run.saved("time", "run.h5")
     assert len(times) == count and times[-1] == pytest.approx(end, rel=1e-12)
     assert run.summary["written"]["frames"] == count
@@ -45,7 +41,7 @@ def test_single_precision(tmp_path):
     double = run_petves(tmp_path / "double", options)
     single = run_petves(tmp_path / "single", f"{options} -output_precision single", 2)
     one = run_petves(tmp_path / "one", f"{options} -output_precision single")
-    assert without_wall(one.folder / "series.csv") == without_wall(double.folder / "series.csv")
+    assert without_wall(one.folder) == without_wall(double.folder)
     exact, rounded, others = frames(double.folder), frames(one.folder), frames(single.folder)
     for name in FIELDS:
         small = name.startswith("fluid")

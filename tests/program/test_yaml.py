@@ -28,9 +28,8 @@ vesicle_angle: 20
 time: {end: 0.1, step: 0.05}
 coupled_ksp_rtol: 1e-8
 """
-PYTHON = (
-    "import sys, petves\nwith petves.Simulation(sys.argv[1]) as s: print(s.options['flow_u'], s.options['time_step'])"
-)
+PYTHON = """import sys, petves
+with petves.Simulation(sys.argv[1]) as s: print(s.options['flow_u'], s.options['time_step'])"""
 MESSAGES = {
     "domain: [1, 2\nflow: }": "cannot be read; allowed: names with values, lists or names of their own in YAML",
     "only text": "cannot be read; allowed: ...",

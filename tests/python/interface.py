@@ -35,9 +35,8 @@ def state():
         M = sim.start[-1]
         assert sim.vesicles == 1 and sim.markers.shape == (M, 2) == sim.marker_velocity.shape
         assert sim.tension.shape == (M,) and not sim.markers.flags.writeable
-        assert np.shares_memory(sim.markers, sim.markers) and np.shares_memory(
-            sim.pressure, sim.vec("pressure").array_r
-        )
+        assert np.shares_memory(sim.markers, sim.markers)
+        assert np.shares_memory(sim.pressure, sim.vec("pressure").array_r)
         for name, form in (("pressure", (32, 32)), ("u", (31, 32)), ("v", (32, 31))):
             assert sim.dm(name).sizes == form, name
         u, v = sim.velocity
@@ -133,10 +132,8 @@ def restarting():
     assert [row.split(",")[:20] for row in rows[0]] == [row.split(",")[:20] for row in rows[1]]
     for name in ("straight", "halves"):
         assert len(petves.Run.read(FOLDER / name).time) == 2
-    refused(
-        "-domain_cells 48,48: the checkpoint",
-        lambda: petves.Simulation.restart(checkpoint, domain_cells=(48, 48), flow=flow),
-    )
+    other = lambda: petves.Simulation.restart(checkpoint, domain_cells=(48, 48), flow=flow)
+    refused("-domain_cells 48,48: the checkpoint", other)
     refused("output_overwrite", lambda: petves.Simulation(output_dir=FOLDER / "straight", **SMALL))
     file = FOLDER / "straight/resolved.opts"  # has -vesicle_semi_axes, which a keyword's alternative replaces
     with petves.Simulation(file, flow_type="shear", vesicle_area=1, output_dir=FOLDER / "area") as sim:
@@ -217,10 +214,8 @@ def quiet():
     with petves.Simulation(**scene) as sim:
         sim.run()
         assert any("-time_step" in text for text in sim.warnings), sim.warnings
-        refused(
-            "inclinaton: no such column; inclination is meant? allowed: step, time, dt,",
-            lambda: sim.measure("inclinaton"),
-        )
+        meant = "inclinaton: no such column; inclination is meant? allowed: step, time, dt,"
+        refused(meant, lambda: sim.measure("inclinaton"))
         refused("foo: no such column; allowed: step, time, dt,", lambda: sim.each("foo"))
 
 

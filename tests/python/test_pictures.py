@@ -18,12 +18,9 @@ from petves.views.words import key_numbers
 
 pytestmark = pytest.mark.xdist_group("pictures")  # its tests share a run
 
-OPTIONS = (
-    "-fluid_inertia none "
-    "-domain_box 0,4,0,2 -domain_cells 48,24 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 "
-    "-flow_center_y 1 -flow_peak_velocity 3 -vesicle_semi_axes .3,.4 -vesicle_center 3.3,1 -time_step .1 -time_end .4 "
-    "-output_every .2"
-)
+OPTIONS = "-domain_box 0,4,0,2 -domain_cells 48,24 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 1"
+OPTIONS += " -flow_center_y 1 -flow_peak_velocity 3 -vesicle_semi_axes .3,.4 -vesicle_center 3.3,1"
+OPTIONS += " -fluid_inertia none -time_step .1 -time_end .4 -output_every .2"
 
 
 @pytest.fixture(scope="module")
@@ -78,9 +75,8 @@ def test_solids_are_filled(follow, run):
     inner, outer = circle(0.3), circle(0.8)[::-1]
     places = {3.9: True, 0.1: True, 0.4: False, 3.3: False, 2.0: True}
     for obstacles, around in (([inner, outer], True), ([inner], False), ([], None)):
-        window = Window(
-            dataclasses.replace(run, obstacles=obstacles, obstacle_kinds=["closed"] * len(obstacles)), -1, follow
-        )
+        solid = dataclasses.replace(run, obstacles=obstacles, obstacle_kinds=["closed"] * len(obstacles))
+        window = Window(solid, -1, follow)
         figure, (axes,) = new_figure(8, 4)
         axes.set(xlim=window.limits[:2], ylim=window.limits[2:])
         draw_solids(axes, window)

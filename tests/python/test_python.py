@@ -5,6 +5,7 @@ import subprocess
 
 import pytest
 from harness import PETVES, ROOT, SANITIZE, mpirun, run_python, without_mpirun
+from restarts import without_wall
 
 SCRIPTS = ROOT / "tests" / "python"
 PYTHON = "/usr/bin/python3"
@@ -87,10 +88,8 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
 
     def test_progress_bar_where_one_is_asked_for(tmp_path):
         script = tmp_path / "script.py"
-        script.write_text(
-            "import petves\nwith petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5)) as sim:\n"
-            "    sim.run(until=0.03, progress=True)\n    sim.run(until=0.05)\n"
-        )
+        code = "import petves\nwith petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5)) as sim:\n"
+        script.write_text(code + "    sim.run(until=0.03, progress=True)\n    sim.run(until=0.05)\n")
         done = run_python(script, ranks=2)
         assert done.returncode == 0 and "100%" in done.stderr
         assert done.stderr.count("| 0/0.03 ") == 1 and "/0.05" not in done.stderr  # a slow bar draws its end twice
@@ -103,14 +102,12 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         words = dict(zip(options.split()[::2], options.split()[1::2]))
         call = ", ".join(f"{name[1:]}={value!r}" for name, value in words.items())
         script = tmp_path / "script.py"
-        script.write_text(
-            f"import petves\nwith petves.Simulation(output_dir={str(tmp_path / 'python')!r}, {call}) as sim:\n"
-            "    sim.run(callback=lambda s: s.markers.sum())\n"
-        )
+        code = f"import petves\nwith petves.Simulation(output_dir={str(tmp_path / 'python')!r}, {call}) as sim:\n"
+        script.write_text(code + "    sim.run(callback=lambda s: s.markers.sum())\n")
         done = run_python(script, ranks=ranks)
         assert done.returncode == 0 and not done.stdout and not without_mpirun(done.stderr), done.stderr
-        rows = [without_wall((tmp_path / name / "series.csv").read_text()) for name in ("program", "python")]
-        assert len(rows[0]) > 3 and rows[0] == rows[1]
+        rows = [without_wall(tmp_path / name) for name in ("program", "python")]
+        assert len(rows[0]) > 4 and rows[0] == rows[1]
         for name in ("resolved.opts", "run.xmf"):
             texts = [(tmp_path / kind / name).read_text().replace(kind, "") for kind in ("program", "python")]
             assert texts[0] == texts[1]
@@ -118,17 +115,16 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
     @pytest.mark.parametrize("comma_from", ["the start", "the first step on"])
     def test_decimal_commas_reach_no_file(comma_from, tmp_path):
         """A program whose locale writes 0,5, as a window of Qt sets it, has the series of one with points."""
-        made = subprocess.run(
-            ["localedef", "-i", "de_DE", "-f", "UTF-8", tmp_path / "de_DE.UTF-8"], capture_output=True
-        )
+        words = f"localedef -i de_DE -f UTF-8 {tmp_path}/de_DE.UTF-8".split()
+        made = subprocess.run(words, capture_output=True)
         if made.returncode:
             pytest.skip("no locale with commas can be made here")
         script = tmp_path / "script.py"
         script.write_text(COMMA.format(early=comma_from == "the start"))
         done = run_python(script, str(tmp_path), LOCPATH=str(tmp_path))
         assert done.returncode == 0 and done.stdout == "1,5 finished 1,5\n" and not done.stderr, done.stderr
-        points, commas = ((tmp_path / name / "series.csv").read_text() for name in ("points", "commas"))
-        assert len(without_wall(points)) > 3 and without_wall(points) == without_wall(commas)
+        points, commas = (without_wall(tmp_path / name) for name in ("points", "commas"))
+        assert len(points) > 4 and points == commas
         assert json.loads((tmp_path / "commas" / "summary.json").read_text())["last"]["time"] == pytest.approx(0.05)
 
     def test_threads_take_turns(tmp_path):
@@ -136,10 +132,3 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         (tmp_path / "script.py").write_text(THREADS)
         done = run_python(tmp_path / "script.py")
         assert done.returncode == 0 and done.stdout == "same\n", done.stdout + done.stderr
-
-
-def without_wall(text: str) -> list[list[str]]:
-    """Entries of a series.csv as text, without the column wall."""
-    rows = [line.split(",") for line in text.splitlines()]
-    wall = rows[0].index("wall")
-    return [row[:wall] + row[wall + 1 :] for row in rows]

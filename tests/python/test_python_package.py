@@ -17,12 +17,35 @@ from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, run_petves, wi
 
 EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
 LEFT = {"quick_start": "quick_start/shapes.png", "restart": "halves/series.csv"}
-RUN = (
-    "import petves\n"
-    "with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_end=0.01) as sim:\n"
-    "    sim.run()\n"
-    "print(petves.__file__, petves.library.library()._name)\n"
-)
+RUN = """
+import petves
+with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_end=0.01) as sim: sim.run()
+print(petves.__file__, petves.library.library()._name)
+"""
+#: What a simulation says of itself, and what it does with attributes.
+SAYS = """
+import petves
+sim = petves.Simulation(domain_cells=(24, 24), flow_type='shear', time_end=0.02, output_dir='out')
+sim.run()
+print(sim)
+for name in ('foo', 'time'):
+    try: setattr(sim, name, 3)
+    except AttributeError as error: print(error)
+sim.close()
+print(repr(sim))
+"""
+NO_LIBRARY = """
+import petves
+try: petves.Simulation()
+except petves.Error as error: print(error)
+"""
+#: What a Python without petsc4py does with a run.
+NO_PETSC = """
+import sys
+sys.modules['petsc4py'] = None
+import petves
+print(len(petves.load(sys.argv[1])['time']), len(petves.plot(sys.argv[1])))
+"""
 
 
 def python(words: list[str], **environment: str) -> subprocess.CompletedProcess:
@@ -68,18 +91,9 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert (tmp_path / LEFT.get(name, f"{name}.png")).stat().st_size > 1000
 
     def test_a_simulation_says_what_it_is_and_takes_no_attributes():
-        code = (
-            "import petves\n"
-            "sim = petves.Simulation(domain_cells=(24, 24), flow_type='shear', time_end=0.02, output_dir='out')\n"
-            "sim.run()\nprint(sim)\n"
-            "for name in ('foo', 'time'):\n"
-            "    try:\n        setattr(sim, name, 3)\n"
-            "    except AttributeError as error:\n        print(error)\n"
-            "sim.close()\nprint(repr(sim))\n"
-        )
         paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY))
         with tempfile.TemporaryDirectory() as folder:
-            done = python(["-c", f"import os\nos.chdir({folder!r})\n{code}"], **paths)
+            done = python(["-c", f"import os\nos.chdir({folder!r})\n{SAYS}"], **paths)
         scene = "<petves.Simulation: 1 vesicle in shear, 24 x 24 cells, wall in x, wall in y, "
         refused = ": a simulation has no attribute to set; options are given when it is made"
         expected = [f"{scene}t = 0.02 of 0.02, out>", f"foo{refused}", f"time{refused}", f"{scene}closed, out>"]
@@ -93,16 +107,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         (tmp_path / "tree" / "lib").mkdir()
         shutil.copy(LIBRARY, tmp_path / "tree" / "lib")
         shutil.copytree(ROOT / "runs", tmp_path / "tree" / "runs")
-        words = [
-            "-m",
-            "pip",
-            "install",
-            "-q",
-            "--no-build-isolation",
-            "--no-deps",
-            "--no-index",
-            "--root-user-action=ignore",
-        ]
+        words = "-m pip install -q --no-build-isolation --no-deps --no-index --root-user-action=ignore".split()
         done = python([*words, "--target", str(tmp_path / "site"), str(tmp_path / "tree" / "python")])
         assert done.returncode == 0, done.stdout + done.stderr
         shutil.rmtree(tmp_path / "tree")
@@ -110,16 +115,12 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert done.returncode == 0, done.stderr
         home = tmp_path / "site" / "petves"
         assert done.stdout.split() == [str(home / "__init__.py"), str(home / "libpetves.so")]
-        assert (
-            (home / "views" / "report.html").is_file()
-            and (home / "py.typed").is_file()
-            and not (tmp_path / "site" / "studies").exists()
-        )
+        assert (home / "views" / "report.html").is_file() and (home / "py.typed").is_file()
+        assert not (tmp_path / "site" / "studies").exists()
         words = f"run stirring -time_end 0 -output_dir {tmp_path / 'out'}".split()
         done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
-        assert done.returncode == 0 and (tmp_path / "out" / "run.h5").is_file(), (
-            "pip's command has the program\n" + done.stderr
-        )
+        assert done.returncode == 0, "pip's command has the program\n" + done.stderr
+        assert (tmp_path / "out" / "run.h5").is_file()
         words = ["sweep", str(tmp_path / "s"), "--vary", "time_end", "0"]
         done = python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
         assert done.returncode == 0 and list((tmp_path / "s").glob("*/run.h5")), done.stderr
@@ -138,19 +139,11 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}
         words = [tmp_path / "bin" / "petves", "compare", tmp_path / "s" / "time_end=0", tmp_path / "s" / "time_end=0"]
         done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
-        assert done.returncode == 0 and (tmp_path / "s" / "time_end=0" / "compare.png").is_file(), (
-            "and the program finds them\n" + done.stderr
-        )
-        share = tmp_path / "share"
-        left = [
-            "man/man1/petves.1",
-            "bash-completion/completions/petves",
-            "doc/petves/README.md",
-            "doc/petves/docs/options.md",
-            "doc/petves/docs/gallery/capillary.png",
-            "petves/runs/shear.opts",
-        ]
-        assert all((share / name).is_file() for name in left)
+        assert done.returncode == 0, "and the program finds them\n" + done.stderr
+        assert (tmp_path / "s" / "time_end=0" / "compare.png").is_file()
+        left = "man/man1/petves.1 bash-completion/completions/petves petves/runs/shear.opts doc/petves/README.md"
+        left += " doc/petves/docs/options.md doc/petves/docs/gallery/capillary.png"
+        assert all((tmp_path / "share" / name).is_file() for name in left.split())
         done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={tmp_path}"], capture_output=True)
         assert done.returncode == 0 and not [path for path in tmp_path.rglob("*petves*") if path.is_file()]
 
@@ -168,11 +161,8 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         for name in reference():
             thing = pkgutil.resolve_name(f"petves.{name}")
             owner = inspect.getdoc(thing) or ""
-            members = (
-                inspect.getmembers(thing, lambda x: inspect.isfunction(x) or inspect.ismethod(x))
-                if inspect.isclass(thing)
-                else []
-            )
+            callable_ = lambda x: inspect.isclass(thing) and (inspect.isfunction(x) or inspect.ismethod(x))
+            members = inspect.getmembers(thing, callable_)
             for label, routine in [(name, thing), *((k, f) for k, f in members if not k.startswith("_"))]:
                 text = f"{inspect.getdoc(routine) or ''}\n{owner}"
                 if text.startswith("\n"):
@@ -186,19 +176,11 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
 
     def test_reading_and_drawing_need_no_petsc(tmp_path):
         run = run_petves(tmp_path / "run", "-domain_cells 24,24 -vesicle_semi_axes 0.4,0.5 -time_end 0.01")
-        code = (
-            "import sys\nsys.modules['petsc4py'] = None\nimport petves\n"
-            f"print(len(petves.load({str(run.folder)!r})['time']), len(petves.plot({str(run.folder)!r})))\n"
-            "try:\n    petves.Simulation()\nexcept petves.Error as error:\n    print(error)\n"
-        )
-        done = python(["-c", code], PYTHONPATH=str(ROOT / "python"))
+        done = python(["-c", NO_PETSC + NO_LIBRARY, str(run.folder)], PYTHONPATH=str(ROOT / "python"))
         first, last = done.stdout.splitlines()
         assert first == "2 6" and last.startswith("petsc4py is not installed, which simulating needs; "), done.stderr
 
     def test_missing_library_is_one_line():
-        done = python(
-            ["-c", "import petves\ntry:\n    petves.Simulation()\nexcept petves.Error as error:\n    print(error)"],
-            PYTHONPATH=str(ROOT / "python"),
-            PETVES_LIBRARY="/nowhere/libpetves.so",
-        )
+        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY="/nowhere/libpetves.so")
+        done = python(["-c", NO_LIBRARY], **paths)
         assert done.stdout == "libpetves.so: not found in /nowhere; run make, or set PETVES_LIBRARY\n", done.stderr

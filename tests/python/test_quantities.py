@@ -14,8 +14,8 @@ from petves.rheology import mean_square_displacement
 xarray = pytest.importorskip("xarray")
 pytestmark = pytest.mark.xdist_group("quantities")  # its tests share runs
 
-CHANNEL = (
-    "-domain_box 0,2,0,1 -domain_cells 64,32 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 0.5"
+CHANNEL = "-domain_box 0,2,0,1 -domain_cells 64,32 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 0.5"
+CHANNEL += (
     " -flow_center_y 0.5 -flow_peak_velocity 3 -fluid_viscosity 2 -fluid_inertia none -time_step 0.01 -time_end 0.02"
 )
 
@@ -56,7 +56,7 @@ def test_probes_are_bilinear_and_wrapped(channel):
 def test_pressure_falls_through_a_throat(cached_run):
     """The pressure that pictures show falls from one end of the period to the other by the column pressure_drop."""
     throat = (
-        "-flow_drive flux -obstacle_shape constriction -obstacle_throat 0.5 -obstacle_length 1 -obstacle_center 1,0"
+        "-obstacle_shape constriction -obstacle_throat 0.5 -obstacle_length 1 -obstacle_center 1,0 -flow_drive flux"
     )
     run = petves.load(cached_run(f"{CHANNEL} -vesicle_shape none {throat}").folder, "numpy")
     data = petves.load(run.folder, "xarray")
@@ -121,9 +121,8 @@ def test_rows_that_are_not_there_yet_are_nan(tmp_path):
 
 def test_displacements_need_even_times(cached_run):
     """Their lags are differences of saved times."""
-    run = petves.load(
-        cached_run("-domain_cells 24,24 -time_step 0.01 -time_end 0.03 -output_every 0.01").folder, "numpy"
-    )
+    options = "-domain_cells 24,24 -time_step 0.01 -time_end 0.03 -output_every 0.01"
+    run = petves.load(cached_run(options).folder, "numpy")
     assert len(mean_square_displacement(run)[0]) == 4
     run.time[2] += 0.002
     with pytest.raises(petves.Error, match="saved times are not even, 0.008 to 0.012 apart"):

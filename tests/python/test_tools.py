@@ -2,7 +2,6 @@
 
 import csv
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -12,7 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import ENVIRONMENT, PETVES, ROOT, SITE, read_series, run_petves
+from harness import SITE, read_series, run_petves, run_tool
 
 import petves
 from petves.run import Run
@@ -20,23 +19,14 @@ from petves.views.report import report
 
 pytestmark = pytest.mark.xdist_group("tools")  # its tests share runs
 
-OPTIONS = (
-    "-domain_cells 32,48 -domain_box -1,1,-1,2 -flow_type shear"
-    " -vesicle_semi_axes 0.3,0.5 -time_step 0.01 -time_end 0.04 -output_every 0.02"
-)
+OPTIONS = "-domain_cells 32,48 -domain_box -1,1,-1,2 -flow_type shear -vesicle_semi_axes 0.3,0.5"
+OPTIONS += " -time_step 0.01 -time_end 0.04 -output_every 0.02"
 CHROMIUM = shutil.which("chromium-headless-shell") or shutil.which("chromium")
 
 
 def tool(*words, good=True, folder=None):
     """Run python3 -m petves; return its lines, of standard error when it must fail with one of them."""
-    done = subprocess.run(
-        [sys.executable, "-m", "petves", *map(str, words)],
-        env={**os.environ, **ENVIRONMENT, "PETVES": PETVES, "PYTHONPATH": str(ROOT / "python")},
-        capture_output=True,
-        text=True,
-        cwd=folder,
-        timeout=300,
-    )
+    done = run_tool(*words, folder=folder)
     assert done.returncode == (0 if good else 1), done.stdout + done.stderr
     assert good or (len(done.stderr.splitlines()) == 1 and done.stderr.startswith("petves: error: "))
     return (done.stdout if good else done.stderr).splitlines()
@@ -120,9 +110,8 @@ def test_sweep_runs_each_once_and_goes_on(tmp_path):
     words = ("sweep", tmp_path / "grid", "--options-file", shared, "--jobs", 2, "--vary", "fluid_viscosity")
     assert tool(*words, 1, 2, "--vary", "time_step", "0.01", "0.02") == [str(tmp_path / "grid" / "sweep.csv")]
     rows = list(csv.DictReader((tmp_path / "grid" / "sweep.csv").open()))
-    assert [(row["fluid_viscosity"], row["time_step"]) for row in rows] == [
-        (v, t) for v in "12" for t in ("0.01", "0.02")
-    ]
+    found = [(row["fluid_viscosity"], row["time_step"]) for row in rows]
+    assert found == [(v, t) for v in "12" for t in ("0.01", "0.02")]
     assert [row["status"] for row in rows] == ["done"] * 4
     for row in rows:
         series = read_series(tmp_path / "grid" / row["folder"] / "series.csv")
@@ -172,20 +161,9 @@ def test_report_draws_the_membrane_in_a_browser(name, frame, periods, request, t
     folder = request.getfixturevalue(name)
     tool("report", folder, "--output", tmp_path / "page.html")
     shot = tmp_path / "shot.png"
-    done = subprocess.run(
-        [
-            CHROMIUM,
-            "--no-sandbox",
-            "--headless",
-            "--hide-scrollbars",
-            "--window-size=1200,1000",
-            "--enable-logging=stderr",
-        ]
-        + ["--virtual-time-budget=2000", f"--screenshot={shot}", f"file://{tmp_path}/page.html#frame={frame}"],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    words = "--no-sandbox --headless --hide-scrollbars --window-size=1200,1000 --enable-logging=stderr".split()
+    words += ["--virtual-time-budget=2000", f"--screenshot={shot}", f"file://{tmp_path}/page.html#frame={frame}"]
+    done = subprocess.run([CHROMIUM, *words], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0 and shot.is_file(), done.stderr
     assert "CONSOLE" not in done.stderr, done.stderr
     red, green, blue = imread(shot)[..., :3].transpose(2, 0, 1)

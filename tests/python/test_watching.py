@@ -19,9 +19,8 @@ SCENE = (
 def test_a_page_follows_a_run_to_its_end(tmp_path, monkeypatch):
     """Pages are drawn while the run goes on, which reload themselves; the last one, after the run was stopped, does not."""
     folder, pages = tmp_path / "run <1>", []
-    run = subprocess.Popen(
-        [PETVES, *SCENE.split(), "-output_dir", str(folder)], env=ENVIRONMENT, stdout=subprocess.DEVNULL
-    )
+    words = [PETVES, *SCENE.split(), "-output_dir", str(folder)]
+    run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
     try:
         while not (folder / "run.lock").exists():
             time.sleep(0.05)

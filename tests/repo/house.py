@@ -59,9 +59,8 @@ def rooms(source: Path) -> dict[str, str]:
             declared[name].append(str(path.relative_to(source).with_suffix("")))
     for path in source.rglob("*.[ch]"):
         name = str(path.relative_to(source).with_suffix(""))
-        homes = (
-            [] if path.with_suffix(".h").exists() else [h for f in functions(path.read_text()) for h in declared[f[1]]]
-        )
+        named = [] if path.with_suffix(".h").exists() else functions(path.read_text())
+        homes = [home for function in named for home in declared[function[1]]]
         found[name] = max(sorted(set(homes)), key=homes.count, default=name)
     return found
 
@@ -180,14 +179,12 @@ class Types:
                     first, *others = part.split(",")
                     words = re.findall(r"\w+", first)
                     kind = next((word for word in words if word not in ("const", "struct", "union")), "")
-                    fields |= {
-                        re.findall(r"\w+", name)[-1]: kind for name in [first, *others] if re.search(r"\w", name)
-                    }
+                    named = [re.findall(r"\w+", name) for name in [first, *others]]
+                    fields |= {words[-1]: kind for words in named if words}
                 for name in names:
                     self.home[name], self.fields[name] = folder(str(path.relative_to(source))), fields
-            self.alias |= dict(
-                (new, old) for old, new in re.findall(r"^typedef struct (\w+) \*?(\w+);", text, re.M) if old != new
-            )
+            aliases = re.findall(r"^typedef struct (\w+) \*?(\w+);", text, re.M)
+            self.alias |= {new: old for old, new in aliases if old != new}
 
     def struct(self, kind: str) -> str:
         return self.alias.get(kind, kind)
@@ -220,9 +217,8 @@ def writes(source: Path) -> Iterator[tuple[str, str]]:
 
 
 def code() -> list[Path]:
-    return [
-        p for tree in TREES for p in sorted((ROOT / tree).rglob("*")) if p.suffix in CODE and "build" not in p.parts
-    ]
+    paths = [path for tree in TREES for path in sorted((ROOT / tree).rglob("*"))]
+    return [path for path in paths if path.suffix in CODE and "build" not in path.parts]
 
 
 def broken() -> Found:

@@ -4,7 +4,6 @@ and the fits find what they are given."""
 import json
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,9 +32,8 @@ def steps(options: str, warmup: int, count: int, ranks: int = 1) -> dict[str, ob
 def test_fast_solves_are_timed(ranks):
     """Three fields and a Stokes solve in three boxes; every back end's residual is small."""
     lines = objects("bench_solve", f"-cells 32 -repeats 3 -hypre {'true' if ranks == 1 else 'false'}", ranks)
-    assert [(line["box"], line["what"]) for line in lines] == [
-        (box, what) for box in ("walls", "channel", "periodic") for what in ("u", "v", "p", "stokes")
-    ]
+    found = [(line["box"], line["what"]) for line in lines]
+    assert found == [(box, what) for box in ("walls", "channel", "periodic") for what in ("u", "v", "p", "stokes")]
     for line in lines:
         assert line["ranks"] == ranks and line["cells"] == 32
         for name in ("copy", "fftw_tridiagonal", "fftw", "hypre"):
@@ -66,9 +64,8 @@ def test_coupled_takes_few_solves_in_steady_tank_treading(box):
 @pytest.mark.parametrize("box", bench.BOXES)
 def test_memory_a_cell(box):
     """Growth of the peak memory from 256^2 to 512^2 cells: at most 60 doubles a cell."""
-    memory = [
-        steps(f"{bench.BOXES[box]} -scheme_type coupled -domain_cells {n},{n}", 1, 4)["memory"] for n in (256, 512)
-    ]
+    scene = f"{bench.BOXES[box]} -scheme_type coupled -domain_cells"
+    memory = [steps(f"{scene} {n},{n}", 1, 4)["memory"] for n in (256, 512)]
     assert (memory[1] - memory[0]) / (512**2 - 256**2) / 8 <= 60
 
 

@@ -92,9 +92,7 @@ def in_browser(address: str) -> str:
     return subprocess.run([CHROMIUM, *words, address], capture_output=True, text=True, timeout=60).stdout
 
 
-@pytest.mark.skipif(
-    not (PROGRAMS.parent / "site-tools" / "mkdocs").is_dir(), reason="MkDocs could not be installed from PyPI"
-)
+@pytest.mark.skipif(not (PROGRAMS.parent / "site-tools" / "mkdocs").is_dir(), reason="PyPI's MkDocs is not there")
 def test_site_is_whole_and_needs_no_network():
     """README with its pictures, notebooks, tables, docstrings; in a browser equations and the search, from files."""
     done = subprocess.run(["make", "-C", ROOT, "docs", f"BUILD={PROGRAMS.parent}"], capture_output=True, text=True)
@@ -133,9 +131,8 @@ def unknown(text: str) -> set[str]:
     text = re.sub(r"\S*[_/^\\=\d]\S*|\b\w+\.[a-z]{1,5}\b", " ", text)  # names of files and options, formulas
     words = ["aspell", "list", "--lang=en_GB", "--encoding=utf-8"]
     found = subprocess.run(words, input=text, capture_output=True, text=True, check=True).stdout.split()
-    return {word.removesuffix("'s") for word in found} - set(
-        (ROOT / "tests" / "repo" / "words.txt").read_text().split()
-    )
+    known = (ROOT / "tests" / "repo" / "words.txt").read_text().split()
+    return {word.removesuffix("'s") for word in found} - set(known)
 
 
 @pytest.mark.skipif(not shutil.which("aspell"), reason="aspell is not installed")
@@ -148,10 +145,7 @@ def test_words_are_spelt_well():
 def test_code_is_spelt_well():
     """Frequent misspellings, in comments and names too; nd is an ordering, tread what a tank has."""
     folders = ["src", "include", "python", "studies", "tests", "bench", "runs", "docs", "README.md", "Makefile"]
-    done = subprocess.run(
-        ["codespell", "-L", "nd,tread", "-S", "*.ipynb,*.json,*.csv,*.png,words.txt,test_docs.py,*.pyc", *folders],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    )
+    skipped = "*.ipynb,*.json,*.csv,*.png,words.txt,test_docs.py,*.pyc"
+    words = ["codespell", "-L", "nd,tread", "-S", skipped, *folders]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout

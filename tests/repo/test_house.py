@@ -46,9 +46,8 @@ def test_comments_and_pages_name_files_that_exist():
     names = {path.name for path in ROOT.rglob("*.[ch]")} | {"own.c"}  # of a reader of docs/install.md
     paths = [*(ROOT / "src").rglob("*.[ch]"), ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
     texts = {path.name: re.sub(r"^#include.*", "", path.read_text(), flags=re.M) for path in paths}
-    found = {
-        (name, word) for name, text in texts.items() for word in re.findall(r"(?<![\w.>&])\w{3,}\.[ch]\b(?!\[)", text)
-    }
+    named = re.compile(r"(?<![\w.>&])\w{3,}\.[ch]\b(?!\[)")
+    found = {(name, word) for name, text in texts.items() for word in named.findall(text)}
     assert len(found) > 100 and not {pair for pair in found if pair[1] not in names}
 
 

@@ -28,11 +28,8 @@ def test_stored_outputs_are_todays(name, tmp_path, monkeypatch):
     today = notebooks.executed(name, tmp_path).cells
     assert sum(bool(printed(cell)) for cell in stored) >= 2 and sum(map(shown, stored)) >= 1
     for old, new in zip(stored, today):
-        assert prints(printed(old), printed(new)), (
-            f"python3 tests/support/notebooks.py {name}",
-            printed(old),
-            printed(new),
-        )
+        said = printed(old), printed(new)
+        assert prints(*said), (f"python3 tests/support/notebooks.py {name}", *said)
         assert shown(old) == shown(new), old.source
 
 

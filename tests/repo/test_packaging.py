@@ -31,9 +31,8 @@ def run(words: list, folder: Path = ROOT, **environment: str) -> str:
     """Run a command without this test's own settings of where petves is; return what it prints."""
     kept = {k: v for k, v in os.environ.items() if not k.startswith(("PETVES", "PYTHONPATH"))}
     environment = {**kept, **ENVIRONMENT, **environment}
-    done = subprocess.run(
-        list(map(str, words)), env=environment, capture_output=True, text=True, timeout=300, cwd=folder
-    )
+    how = dict(capture_output=True, text=True, timeout=300, cwd=folder)
+    done = subprocess.run(list(map(str, words)), env=environment, **how)
     assert done.returncode == 0, f"{words}\n{done.stdout}{done.stderr}"
     return done.stdout
 

@@ -89,9 +89,8 @@ def test_quick_is_the_corners():
 def test_panels_have_options_of_their_own(tmp_path, monkeypatch):
     """Other panels than schemes: their options come after the map's; what the program said is in tables.md."""
     one = next(one for one in bodies.MAPS if one.name == "throat")
-    one = replace(
-        one, xs=(0.4,), ys=(0.0448,), panels={name: one.panels[name] for name in ("no repulsion", "repulsion")}
-    )
+    panels = {name: one.panels[name] for name in ("no repulsion", "repulsion")}
+    one = replace(one, xs=(0.4,), ys=(0.0448,), panels=panels)
     monkeypatch.setenv("PETVES", PETVES)
     report.write(tmp_path, maps=(one,))
     rows = read(tmp_path)
@@ -100,21 +99,16 @@ def test_panels_have_options_of_their_own(tmp_path, monkeypatch):
     assert plain["mark"] == "membranes cross" and "vesicle 1 and obstacle 2 cross" in plain["message"]
     assert pushed["mark"] == "film drained" and pushed["options"].endswith("-contact_repulsion 2000")
     text = (tmp_path / "tables.md").read_text()
-    assert (
-        f"| throat | no repulsion | membranes cross | 1 | {plain['message']} |" in text
-        and "| repulsion | 0 of 1 |" in text
-    )
+    assert f"| throat | no repulsion | membranes cross | 1 | {plain['message']} |" in text
+    assert "| repulsion | 0 of 1 |" in text
 
 
 def test_a_handful_of_cells(tmp_path, monkeypatch):
     """Stiff membrane, large step: penalty and split fail, coupled does not; a small step is good for all; a changed
     step; a refused spacing. What has run is not run again, unless its options have changed."""
     monkeypatch.setenv("PETVES", PETVES)
-    chosen = (
-        some(DT_CB, (1.0,), (2**-5, 2**-13)),
-        some(CHANGE, (1 / 64, 64.0), (1 / 512,)),
-        some(SPACING, ("ib6",), (0.75,)),
-    )
+    chosen = some(DT_CB, (1.0,), (2**-5, 2**-13)), some(CHANGE, (1 / 64, 64.0), (1 / 512,))
+    chosen += (some(SPACING, ("ib6",), (0.75,)),)
     paths = report.write(tmp_path, maps=chosen)
     assert {p.name for p in paths} == {"stability.csv", "tables.md", "dt_cb.png", "dt_change.png", "spacing_kernel.png"}
     assert all(p.stat().st_size for p in paths)

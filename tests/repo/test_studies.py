@@ -8,17 +8,8 @@ import sys
 import pytest
 from harness import ROOT
 
-HOMES = {
-    "accuracy": "accuracy",
-    "inertia": "inertia",
-    "time": "time",
-    "gallery": "gallery",
-    "stability": "stability",
-    "chart": "speed_accuracy",
-    "calibrate": "speed_accuracy",
-    "unseen": "speed_accuracy",
-    "reproduce": "reproduction",
-}
+HOMES = {name: name for name in ("accuracy", "inertia", "time", "gallery", "stability")} | {"reproduce": "reproduction"}
+HOMES |= dict.fromkeys(("chart", "calibrate", "unseen"), "speed_accuracy")
 
 
 #: Pictures but the first are built and not drawn: layouts take most of the time, and no picture is compared.

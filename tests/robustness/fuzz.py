@@ -35,20 +35,7 @@ WORDS = ["nan", "inf", "abc", "1,2", "", "0x10", "1e", "-", "true", "9" * 40, "%
 
 #: Options with draws of their own; None: not drawn.
 OWN = {
-    "-domain_cells": [
-        "8,8",
-        "16,16",
-        "24,24",
-        "16,8",
-        "17,17",
-        "22,22",
-        "9,9",
-        "0,0",
-        "7,7",
-        "-8,-8",
-        "16",
-        "99999,99999",
-    ],
+    "-domain_cells": "8,8 16,16 24,24 16,8 17,17 22,22 9,9 0,0 7,7 -8,-8 16 99999,99999".split(),
     "-domain_box": ["-1,1,-1,1", "0,2,0,2", "-2,2,-1,1", "0,0,0,0", "-1e9,1e9,-1e9,1e9", "-1e-9,1e-9,-1e-9,1e-9"],
     "-vesicle_center": ["0,0", "0.1,-0.1", "1,1", "0.95,0", "1e300,0", "0,0,0.5,0.5", "-0.4,0,0.4,0", "100,0"],
     "-vesicle_semi_axes": ["0.2,0.5", "0.5,0.5", "0.01,0.5", "0.3,0.3,0.2,0.2", "1e-9,1", "5,5", "1e150,1e150"],
@@ -57,22 +44,20 @@ OWN = {
     "-vesicle_file": ["no.txt", "{curve}", "/", "/dev/null"],
     "-restart": ["{checkpoint}", "no.h5", "/", "/dev/null", "{curve}"],
     "-vesicle_markers": ["8", "20", "21", "40", "7", "1000", "2000000000"],
-    "-output_dir": None,
-    "-time_wall_limit": None,
-    "-output_overwrite": None,
+    **dict.fromkeys(("-output_dir", "-time_wall_limit", "-output_overwrite")),
 }
 
 #: PETSc's own options, with values that it takes or not.
 PETSC = ["-log_view", "-log_view gmres", "-log_view :/proc/none", "-malloc_debug maybe", "-malloc_debug", "-info /no/x"]
+PETSC += ["-coupled_ksp_view foo", "-options_left maybe", "-fp_trap x", "-prefix_push a_", "-prefix_pop"]
 PETSC += [
-    "-coupled_ksp_view foo",
-    "-options_left maybe",
-    "-fp_trap x",
-    "-prefix_push a_",
-    "-prefix_pop",
     "-log_trace /no",
+    "-tension_ksp_max_it 1",
+    "-coupled_ksp_rtol 1",
+    "-bending_pc_type 1",
+    "-no_such 1",
+    "-coupled_pc_type lu",
 ]
-PETSC += ["-tension_ksp_max_it 1", "-coupled_ksp_rtol 1", "-bending_pc_type 1", "-no_such 1", "-coupled_pc_type lu"]
 PETSC += ["-coupled_ksp_type nosuch", "-coupled_ksp_monitor", "-coupled_ksp_rtol abc", "-options_view", "-skip_petscrc"]
 
 
@@ -90,9 +75,8 @@ class Case:
     def __str__(self) -> str:
         extra = [f"{name}={value!r}" for name, value in self.environment.items()]
         extra += [f"{name}: {text[:200]!r}" for name, text in self.files.items()]
-        return (
-            f"{self.kind}, {self.ranks} ranks: {' '.join(map(repr, self.words))} {' '.join(extra)} {self.signal or ''}"
-        )
+        words = " ".join([*map(repr, self.words), *extra])
+        return f"{self.kind}, {self.ranks} ranks: {words} {self.signal or ''}"
 
 
 class Draw:
@@ -212,28 +196,17 @@ class Draw:
     def environment(self) -> Case:
         case = Case("environment", self.scene(1))
         for _ in range(self.random.randint(1, 2)):
-            options = [
-                " ".join(self.scene(2)),
-                *PETSC,
-                "stray",
-                "'",
-                "-options_file no.opts",
-                "-time_end = 1",
-                "\t \n",
-                "#",
+            options = [" ".join(self.scene(2)), *PETSC, "stray", "'"]
+            options += ["-options_file no.opts", "-time_end = 1", "\t \n", "#"]
+            choices = [("PETSC_OPTIONS", options)] * 2 + [
+                ("HOME", ["/nowhere", "", "."]),
+                ("TMPDIR", ["", "/tmp"]),  # one that is not there stops MPI before petves begins
+                ("LC_ALL", ["C", "de_DE.UTF-8", "nonsense"]),
+                ("OMP_NUM_THREADS", ["1", "2"]),
+                ("COLUMNS", ["0", "-1"]),
+                ("PATH", ["/usr/bin:/bin", "/usr/bin:/bin:/nowhere"]),
             ]
-            name, values = self.random.choice(
-                [
-                    ("PETSC_OPTIONS", options),
-                    ("PETSC_OPTIONS", options),
-                    ("HOME", ["/nowhere", "", "."]),
-                    ("TMPDIR", ["", "/tmp"]),  # one that is not there stops MPI before petves begins
-                    ("LC_ALL", ["C", "de_DE.UTF-8", "nonsense"]),
-                    ("OMP_NUM_THREADS", ["1", "2"]),
-                    ("COLUMNS", ["0", "-1"]),
-                    ("PATH", ["/usr/bin:/bin", "/usr/bin:/bin:/nowhere"]),
-                ]
-            )
+            name, values = self.random.choice(choices)
             case.environment[name] = self.random.choice(values).replace("\0", "")
         if self.random.random() < 0.2:
             case.files[".petscrc"] = self.mangled("\n".join(self.random.sample(PETSC, 2)).encode())
@@ -284,7 +257,7 @@ def check(case: Case, folder: Path, tries: int = 3) -> str:
         return "hangs"
     if (
         "An error occurred in MPI_Init" in stderr and tries
-    ):  # of two that start in the same moment: before petves begins
+    ):  # of two that start in the same moment, before petves begins
         return check(case, folder.with_name(folder.name + "+"), tries - 1)
     lines = without_mpirun(stderr) if case.ranks > 1 else stderr.splitlines()
     if process.returncode not in (0, 1, 2):
@@ -311,13 +284,10 @@ def not_finite(folder: Path) -> str:
     bad = []
     for path in (folder / "run.h5", folder / "checkpoint.h5"):
         with h5py.File(path) as file:
-            file.visititems(
-                lambda name, item: (
-                    bad.append(f"{path.name}: {name}")
-                    if isinstance(item, h5py.Dataset) and not np.isfinite(item[:]).all()
-                    else None
-                )
-            )
+            names = []
+            file.visit(names.append)
+            sets = [name for name in names if isinstance(file[name], h5py.Dataset)]
+            bad += [f"{path.name}: {name}" for name in sets if not np.isfinite(file[name][:]).all()]
     return bad[0] if bad else ""
 
 
@@ -331,9 +301,7 @@ def make_places(folder: Path) -> dict[str, str]:
     return {"curve": str(folder / "curve.txt"), "checkpoint": str(folder / "first" / "checkpoint.h5")}
 
 
-def run_cases(
-    seed: int, numbers: list[int], ranks: list[int], folder: Path, workers: int = 2
-) -> tuple[list[str], list]:
+def run_cases(seed: int, numbers: list, ranks: list, folder: Path, workers: int = 2) -> tuple[list[str], list]:
     """What went wrong, a text a case, and all cases. Case k has the k-th number of ranks, in turn."""
     table, places = described(PETVES), make_places(folder)
     cases = {k: Draw(seed, k, table, places).case(ranks[k % len(ranks)]) for k in numbers}

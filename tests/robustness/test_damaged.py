@@ -19,9 +19,8 @@ from petves.sweeps import sweep
 
 pytestmark = pytest.mark.xdist_group("damaged")  # its tests share a run
 
-SCENE = (
-    "-domain_cells 16,16 -vesicle_semi_axes 0.4,0.5 -flow_type shear -domain_bc_x periodic -time_step 0.01 -time_end"
-)
+SCENE = "-domain_cells 16,16 -vesicle_semi_axes 0.4,0.5 -flow_type shear -domain_bc_x periodic"
+SCENE += " -time_step 0.01 -time_end"
 
 
 @pytest.fixture(scope="module")
@@ -39,9 +38,8 @@ def folder(whole, tmp_path) -> Path:
 def tool(*words: object, **places: object) -> subprocess.CompletedProcess:
     """Run a tool of the program, as users do."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | ENVIRONMENT
-    return subprocess.run(
-        [PETVES, *map(os.fspath, words)], env=environment, capture_output=True, errors="replace", timeout=120, **places
-    )
+    words = [PETVES, *map(os.fspath, words)]
+    return subprocess.run(words, env=environment, capture_output=True, errors="replace", timeout=120, **places)
 
 
 def test_cut_row_is_left_out(folder):
@@ -61,9 +59,8 @@ def test_cut_row_is_left_out(folder):
 def test_run_that_goes_on_and_is_killed(tmp_path):
     """What is loaded meanwhile, and after the kill, are rows and frames of the whole run; each row is there at once."""
     folder, options = tmp_path / "run", f"{SCENE} 100 -output_every 0.2 -checkpoint_every 0".split()
-    process = subprocess.Popen(
-        [PETVES, *options, "-output_dir", folder], env={**os.environ, **ENVIRONMENT}, stdout=subprocess.DEVNULL
-    )
+    words, environment = [PETVES, *options, "-output_dir", folder], {**os.environ, **ENVIRONMENT}
+    process = subprocess.Popen(words, env=environment, stdout=subprocess.DEVNULL)
     found, sizes = [], set()
     while not (folder / "run.xmf").exists():
         time.sleep(0.01)
@@ -181,9 +178,8 @@ def test_no_module_of_the_current_folder(folder, tmp_path):
         path.write_text("import sys\nsys.exit('taken')\n")
     for python_path in ({}, {"PYTHONPATH": ""}):
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-        done = subprocess.run(
-            [PETVES, "plot", folder], env=environment | python_path, cwd=tmp_path / "here", capture_output=True
-        )
+        how = dict(env=environment | python_path, cwd=tmp_path / "here", capture_output=True)
+        done = subprocess.run([PETVES, "plot", folder], **how)
         assert done.returncode == 0, done.stderr
 
 
@@ -191,20 +187,16 @@ def test_links_are_not_followed(folder, tmp_path):
     """A picture, a page and a film at whose name a link lies are refused, and the link's file stays."""
     mine = tmp_path / "mine"
     mine.write_text("mine")
-    for words, name in (
-        (("plot",), "energy.png"),
-        (("report",), "report.html"),
-        (("movie", "--every", "3"), "movie.mp4"),
-    ):
+    for words, name in ("plot", "energy.png"), ("report", "report.html"), ("movie --every 3", "movie.mp4"):
         (folder / name).symlink_to(mine)
-        done = tool(words[0], folder, *words[1:])
+        verb, *more = words.split()
+        done = tool(verb, folder, *more)
         assert done.returncode == 1 and f"{name}: cannot be written (it is a link" in done.stderr, done.stderr
         assert mine.read_text() == "mine"
     with pytest.raises(RunError), writing(folder / "new"):
         raise OSError("no space")
-    assert not [
-        path for path in folder.iterdir() if path.name.startswith((".petves", "new"))
-    ], "and nothing is left over"
+    left = [path for path in folder.iterdir() if path.name.startswith((".petves", "new"))]
+    assert not left, "and nothing is left over"
 
 
 @pytest.mark.parametrize("name", ["OUTPUT_DIR", "python", "-start_in_debugger", "dll_append", "History", "log_view"])

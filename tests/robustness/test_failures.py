@@ -46,10 +46,8 @@ def test_fast_solve_that_fails_later_keeps_the_steps_before(ranks, tmp_path):
 
 def test_fast_solve_without_vesicle(tmp_path):
     """No outer iteration sees the failed solve: what the step leaves is looked at."""
-    options = (
-        "-domain_cells 32,32 -time_step 0.1 -time_end 1 -scheme_type split -vesicle_shape none -flow_type shear "
-        "-flow_form total -helmholtz_type hypre -helmholtz_ksp_max_it 1"
-    )
+    options = "-domain_cells 32,32 -time_step 0.1 -time_end 1 -scheme_type split -vesicle_shape none"
+    options += " -flow_type shear -flow_form total -helmholtz_type hypre -helmholtz_ksp_max_it 1"
     run = run_petves(tmp_path / "out", options, 2, good=False, timeout=60)
     assert run.status == 2 and len(run.errors) == 1
     assert re.search(reason("helmholtz_", 1), run.errors[0].removeprefix("petves: error: "))
@@ -92,10 +90,9 @@ def test_dense_blocks_serve_many_steps(tmp_path):
 def test_matrix_without_factor_ends_the_run(ranks, tmp_path):
     """The dense blocks of the preconditioner, on the one rank that owns the vesicle: every rank ends, one line, status 2,
     the last good state on disk."""
-    options = (
-        "-domain_cells 32,32 -flow_type shear -flow_rate 10 -time_step 0.02 -time_end 2 -checkpoint_every 0".split()
-    )
-    done = mpirun([PETVES, "-output_dir", str(tmp_path / "out"), *options], ranks, 60, failing_from(7, tmp_path))
+    options = "-domain_cells 32,32 -flow_type shear -flow_rate 10 -time_step 0.02 -time_end 2 -checkpoint_every 0"
+    words = [PETVES, "-output_dir", str(tmp_path / "out"), *options.split()]
+    done = mpirun(words, ranks, 60, failing_from(7, tmp_path))
     run = Run(tmp_path / "out", done.returncode, done.stdout, without_mpirun(done.stderr))
     line = reason("coupled_", 0).replace("ITS", "PC_FAILED")
     _, series = leaves_files(run, line.replace(r"[\d.e-]+;", r"\S+;"))

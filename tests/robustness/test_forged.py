@@ -103,10 +103,7 @@ FORGED = {
     "row with a line break": (attribute("series_row", np.bytes_("3,0.06\n4,")), "row of series.csv"),
     "velocity that is not a number": (dataset("fluid/u", with_entry(np.nan)), "its velocity is up to"),
     "flow that is not a number": (dataset("fluid/flow", with_entry(np.nan)), "its flow is up to"),
-    "flow of an earlier state that is infinite": (
-        dataset("previous/fluid/flow", with_entry(np.inf)),
-        "its flow is up to",
-    ),
+    "earlier flow that is infinite": (dataset("previous/fluid/flow", with_entry(np.inf)), "its flow is up to"),
     "flow of fewer modes": (replaced("fluid/flow", lambda v: v[:, :, 1:]), "size or storage"),
     "markers far away": (dataset("vesicle/markers", with_entry(1e300)), "its markers is up to 1e+300"),
     "pressure that is infinite": (dataset("fluid/p", with_entry(np.inf)), "its pressure is up to"),

@@ -7,24 +7,14 @@ import random
 import shutil
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import h5py
 import harness
 import pytest
-from harness import (
-    PETVES,
-    SANITIZE,
-    mpirun,
-    preloaded,
-    read_series,
-    run_petves,
-    run_python,
-    without_mpirun,
-)
 from double_starts import KINDS, double_start
-from refusals import one_line
+from harness import PETVES, SANITIZE, mpirun, preloaded, read_series, run_petves, run_python, wait_for, without_mpirun
+from refusals import refused
 from restarts import without_wall
 
 pytestmark = pytest.mark.xdist_group("one_folder")  # its tests share runs
@@ -36,13 +26,6 @@ def start(folder: Path, options: str, ranks: int = 1, **how) -> subprocess.Popen
     """A run in the background that has no end unless the options say one."""
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     return harness.start(folder, f"{SCENE} -time_end 1000 {options}", ranks, **quiet, **how)
-
-
-def wait_for(condition) -> None:
-    end = time.time() + 60
-    while not condition():
-        assert time.time() < end, "not within a minute"
-        time.sleep(0.005)
 
 
 def ends_with_line(process: subprocess.Popen, *needles: str) -> None:
@@ -77,10 +60,8 @@ def test_a_live_run_keeps_its_folder(ranks, tmp_path):
     live = start(folder, "-checkpoint_every 5", ranks)
     wait_for((folder / "checkpoint.h5").exists)
     for options in ("-output_overwrite", f"-restart {folder}/checkpoint.h5", "")[:: 3 - ranks]:
-        run = run_petves(folder, f"{SCENE} -time_end 0.1 {options}", 3 - ranks, good=False)
-        one_line(
-            run, f"-output_dir {folder}: in use by process ", f" on {os.uname().nodename}", "allowed: another folder"
-        )
+        needles = f"-output_dir {folder}: in use by process ", f" on {os.uname().nodename}", "allowed: another folder"
+        refused(folder, f"{SCENE} -time_end 0.1 {options}", *needles, ranks=3 - ranks)
     who = int((folder / "run.lock").read_text().split()[1])
     assert "petves" in Path(f"/proc/{who}/cmdline").read_text()
     live.kill()
@@ -136,12 +117,10 @@ def test_stopped_and_continued(tmp_path):
     live = start(folder, end)
     wait_for((folder / "run.xmf").exists)
     live.send_signal(signal.SIGSTOP)
-    one_line(run_petves(folder, f"{SCENE} {end} -output_overwrite", good=False), "in use by process")
+    refused(folder, f"{SCENE} {end} -output_overwrite", "in use by process")
     live.send_signal(signal.SIGCONT)
     assert live.wait(timeout=60) == 0
-    assert without_wall(folder / "series.csv") == without_wall(
-        run_petves(tmp_path / "whole", f"{SCENE} {end}").folder / "series.csv"
-    )
+    assert without_wall(folder) == without_wall(run_petves(tmp_path / "whole", f"{SCENE} {end}").folder)
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="root writes into what others may not")
@@ -194,10 +173,9 @@ int clock_gettime(clockid_t clock, struct timespec *now) {
 
 def test_clock_set_back(tmp_path):
     """The wall limit, the progress lines and the seconds of a step go by a clock that nobody sets."""
-    options = (
-        f"{SCENE} -time_step 1e-5 -time_end 1000 -output_every 10 -time_wall_limit 4 -output_dir {tmp_path / 'run'}"
-    )
-    done = mpirun([PETVES, *options.split()], 1, 60, LD_PRELOAD=preloaded(tmp_path, CLOCK))
+    options = f"{SCENE} -time_step 1e-5 -time_end 1000 -output_every 10 -time_wall_limit 4".split()
+    options += ["-output_dir", str(tmp_path / "run")]
+    done = mpirun([PETVES, *options], 1, 60, LD_PRELOAD=preloaded(tmp_path, CLOCK))
     assert done.returncode == 0 and "-time_wall_limit" in done.stdout, done.stdout + done.stderr
     assert read_series(tmp_path / "run" / "series.csv")["wall"].min() >= 0
     assert 0 < json.loads((tmp_path / "run" / "summary.json").read_text())["wall_seconds"]["run"] < 4

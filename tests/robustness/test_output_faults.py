@@ -1,7 +1,6 @@
 """Files that cannot be closed or written: one line on every rank, everything freed, and the last good state on disk. And
 what a frame costs, at any time of a run."""
 
-import csv
 import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -10,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import PAPER, PETVES, SANITIZE, mpirun, preloaded, run_petves, run_python, without_mpirun
+from restarts import without_wall
 
 pytestmark = pytest.mark.xdist_group("output_faults")  # its tests share runs
 
@@ -62,12 +62,6 @@ def straight(cached_run):
     return lambda ranks: cached_run(f"{SCENE} -time_end 0.12", ranks)
 
 
-def rows(folder: Path) -> list[list[str]]:
-    """As they are in the file, but the seconds."""
-    with (folder / "series.csv").open() as file:
-        return [[row[name] for name in row if name != "wall"] for row in csv.DictReader(file)]
-
-
 def meets(fault: str, name: str, folder: Path, end: float, ranks: int) -> None:
     """A run for which the file of this name cannot be closed: the line, status 1, nothing left in memory."""
     options = f"{SCENE} -time_end {end} -output_dir {folder} -malloc_debug -malloc_dump -objects_dump"
@@ -87,7 +81,7 @@ def test_close_that_fails_at_the_end(name, ranks, fault, straight, tmp_path):
     meets(fault, name, folder, 0.1, ranks)
     assert json.loads((folder / "summary.json").read_text())["reason"] == "finished"
     run_petves(folder, f"{SCENE} -time_end 0.12 -restart {folder}/checkpoint.h5", ranks)
-    assert rows(folder) == rows(straight(ranks).folder)
+    assert without_wall(folder) == without_wall(straight(ranks).folder)
 
 
 @pytest.mark.parametrize("ranks", [1, 3])
@@ -185,9 +179,8 @@ def test_a_frame_costs_the_same_at_any_time(tmp_path):
     assert np.mean(read[late]) < 1.1 * np.mean(read[early]) + 100, (read[early], read[late])
     assert len(set(inodes)) == 1
     for k, text in enumerate(texts):
-        assert [int(grid.get("Name").split()[1]) for grid in ET.fromstring(text).findall("Domain/Grid/Grid")] == list(
-            range(k + 2)
-        )
+        names = [grid.get("Name").split()[1] for grid in ET.fromstring(text).findall("Domain/Grid/Grid")]
+        assert names == [str(n) for n in range(k + 2)]
     head = texts[0].index("<Xdmf")
     for one, two in zip(texts, texts[1:]):
         end = one.rindex("</Grid>")

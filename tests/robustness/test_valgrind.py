@@ -21,6 +21,7 @@ ROWS = ",".join(f"{x},{y}" for x in (-0.6, -0.2, 0.2, 0.6) for y in (-0.55, 0, 0
 TWELVE = f"-vesicle_count 12 -vesicle_center {ROWS} -vesicle_semi_axes 0.08,0.12 -vesicle_markers 16"
 SOLID = "-obstacle_shape posts -obstacle_radius 0.2 -obstacle_center 0.7,0.7"
 STRETCHING = "-membrane_law hooke -membrane_stretching 1 -membrane_viscosity 1 -membrane_permeability 0.1"
+MOVING = f"{SOLID} -flow_type uniform -obstacle_moving -obstacle_velocity 1,0"
 POSTS = f"-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 {SOLID}"
 
 #: Options and status. Restarts: one that goes on, one whose first step is refused, one of another scene.
@@ -46,11 +47,7 @@ LONG = SHORT | {
     "contrast": (f"{TWO_STEPS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
     "contrast_channel": (f"{TWO_STEPS} -domain_cells 32,32 -domain_bc_x periodic -vesicle_viscosity_ratio 5", 0),
     "contrast_posts": (f"{TWO_STEPS} {POSTS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
-    "contrast_moving_posts": (
-        f"{BASE} -domain_cells 32,32 {SOLID} {PERIODIC} -flow_type uniform -vesicle_viscosity_ratio 5 -obstacle_moving "
-        "-obstacle_velocity 1,0",
-        0,
-    ),
+    "contrast_moving_posts": (f"{BASE} -domain_cells 32,32 {MOVING} {PERIODIC} -vesicle_viscosity_ratio 5", 0),
     "membranes": (f"{TWO_STEPS} {STRETCHING} -membrane_memory 1 -tracer_grid 2,2", 0),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -time_end 0.03", 0),
@@ -110,9 +107,7 @@ def test_memory_of_scenes(ranks, checkpoint, tmp_path):
 
 @pytest.mark.parametrize("contrast", ["1", "5"])
 @pytest.mark.parametrize(
-    "box",
-    ["", "-domain_bc_x periodic", PERIODIC, FREE, POSTS],
-    ids=["walls", "channel", "periodic", "free", "posts"],
+    "box", ["", "-domain_bc_x periodic", PERIODIC, FREE, POSTS], ids="walls channel periodic free posts".split()
 )
 def test_bits_do_not_depend_on_what_memory_held(box, contrast, tmp_path):
     """The C library fills what malloc gives with a byte: numbers of 0, of 32.5, and not a number. 47 markers leave
@@ -122,12 +117,8 @@ def test_bits_do_not_depend_on_what_memory_held(box, contrast, tmp_path):
     final, first = [], []
     for byte in (255, 255 - 0x40, 255 - 0xFF):
         folder = tmp_path / str(byte)
-        assert (
-            mpirun(
-                [PETVES, *options.split(), "-output_dir", str(folder)], 1, MALLOC_PERTURB_=str(byte), **every
-            ).returncode
-            == 0
-        )
+        words = [PETVES, *options.split(), "-output_dir", str(folder)]
+        assert mpirun(words, 1, MALLOC_PERTURB_=str(byte), **every).returncode == 0
         with h5py.File(folder / "checkpoint.h5") as file:
             final.append(file["vesicle/markers"][()].tobytes())
         rows = read_series(folder / "series.csv")

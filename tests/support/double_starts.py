@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import harness
 import numpy as np
-from harness import read_series
+from harness import read_series, wait_for
 
 SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.1"
 STEPS = 300
@@ -25,14 +25,6 @@ def start(folder: Path, options: str) -> subprocess.Popen:
     """petves in the background."""
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     return harness.start(folder, f"{SCENE} {END} {options}", **quiet)
-
-
-def begun(folder: Path) -> None:
-    """Wait until the run has a checkpoint."""
-    end = time.time() + 60
-    while not (folder / "checkpoint.h5").exists():
-        assert time.time() < end, "no checkpoint within a minute"
-        time.sleep(0.002)
 
 
 def whole(folder: Path) -> None:
@@ -52,15 +44,13 @@ def two(folder: Path, kind: str, draw: random.Random) -> list[subprocess.Popen]:
     restart = f"-restart {folder}/checkpoint.h5"
     if kind in ("restart twice", "overwrite and restart"):
         assert start(folder, f"-time_end {0.02 * (STEPS // 3)}").wait() == 0
-        return [
-            start(folder, "-output_overwrite" if kind == "overwrite and restart" else restart),
-            start(folder, restart),
-        ]
+        first = start(folder, "-output_overwrite" if kind == "overwrite and restart" else restart)
+        return [first, start(folder, restart)]
     first = start(folder, "")
     if kind == "fresh":
         time.sleep(draw.choice((0, 0, draw.uniform(0, 0.3))))
         return [first, start(folder, "")]
-    begun(folder)
+    wait_for((folder / "checkpoint.h5").exists)
     return [first, start(folder, restart if kind == "restart" else "-output_overwrite")]
 
 

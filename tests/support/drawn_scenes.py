@@ -77,9 +77,8 @@ class Draw:
         pick = self.random.choice
         self.h = pick([1 / 16, 1 / 8, 0.1])
         self.n = np.array(pick([(24, 24), (28, 28), (32, 24), (24, 32)]))
-        self.bc = np.array(
-            ["free"] * 2 if self.chance(0.1) else [pick(["wall", "periodic"]), pick(["wall", "periodic"])]
-        )
+        self.bc = ["free"] * 2 if self.chance(0.1) else [pick(["wall", "periodic"]), pick(["wall", "periodic"])]
+        self.bc = np.array(self.bc)
         if self.bc.tolist() == ["wall", "periodic"]:
             self.bc = self.bc[::-1]
         self.low = np.array([self.random.uniform(-2, 2), self.random.uniform(-2, 2)])
@@ -161,11 +160,8 @@ class Draw:
             self.forces(len(vesicles), nu * rate / R0, bending)
             self.membranes(len(vesicles), R0, nu, bending)
         if kind != "none" and self.text["fluid_inertia"] != "none":  # with shorter steps vesicles beside solids grow
-            self.numbers |= {
-                name: value * max(1, 0.64 * h**2 / (nu * step))
-                for name, value in self.numbers.items()
-                if name in ("time_step", "time_end", "output_every", "time_adapt_max_step")
-            }
+            times = self.numbers.keys() & {"time_step", "time_end", "output_every", "time_adapt_max_step"}
+            self.numbers |= {name: self.numbers[name] * max(1, 0.64 * h**2 / (nu * step)) for name in times}
         if kind != "none":
             self.bodies(kind, found, rate)
         return Scene(self.numbers, self.text, vesicles, [] if kind in ("none", "posts") else found, kind)

@@ -6,6 +6,7 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,29 +48,30 @@ if SANITIZE:  # also programs that the package or a study starts
 #: The paper's scheme; its discretisation follows from it. Tests start from the default scheme unless they say this.
 PAPER = "-scheme_type split"
 
-COLUMNS = (
-    "step,time,dt,energy_kinetic,energy_bending,area,length,area_error,length_error,edge_ratio,div_max,"
-    "surface_div_max,center_x,center_y,inclination,frequency,tension_its,bending_its,coupled_its,nsolve,wall,area_shift,"
-    "normal_speed,velocity_x,velocity_y,energy_gravity,"
-    "gap,energy_contact,viscosity_wall,viscosity,normal_stress_wall,normal_stress"
-).split(",")
+COLUMNS = """step time dt energy_kinetic energy_bending area length area_error length_error edge_ratio div_max
+surface_div_max center_x center_y inclination frequency tension_its bending_its coupled_its nsolve wall area_shift normal_speed
+velocity_x velocity_y energy_gravity gap energy_contact viscosity_wall viscosity normal_stress_wall normal_stress""".split()
 
 
 def mpirun(command: list[str], ranks: int, timeout: float = 300, wrapper: tuple[str, ...] = (), **environment: str):
     """Run a command on `ranks` ranks, one of them without mpirun; returns the CompletedProcess with text streams."""
-    done = subprocess.run(
-        [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *wrapper, *command],
-        env={**os.environ, **ENVIRONMENT, **environment},
-        capture_output=True,
-        text=True,
-        timeout=timeout,
-    )
+    words = [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *wrapper, *command]
+    how = dict(env={**os.environ, **ENVIRONMENT, **environment}, capture_output=True, text=True, timeout=timeout)
+    done = subprocess.run(words, **how)
     if "An error occurred in MPI_Init" in done.stderr and ranks == 1:  # of two that start in the same moment
         return mpirun(command, ranks, timeout, wrapper, **environment)
     lacks = re.search("solver type (mumps)|PC type (hypre)", done.stderr)
     if lacks and os.environ.get("PETSC_DIR"):  # Debian's has both
         pytest.skip(f"this PETSc was built without {lacks[1] or lacks[2]}")
     return done
+
+
+def run_tool(*words, folder=None, **environment: str) -> subprocess.CompletedProcess:
+    """Run python3 -m petves, of this package with the program under test."""
+    paths = {"PETVES": PETVES, "PYTHONPATH": str(ROOT / "python"), **environment}
+    words = [sys.executable, "-m", "petves", *map(str, words)]
+    how = dict(capture_output=True, text=True, cwd=folder, timeout=300)
+    return subprocess.run(words, env={**os.environ, **ENVIRONMENT, **paths}, **how)
 
 
 def run_python(script: Path, *words: str, ranks: int = 1, timeout: float = 300, **environment: str):
@@ -121,6 +123,12 @@ class Run:
         return read_series(self.folder / "series.csv")
 
     @property
+    def resolved(self) -> dict[str, str]:
+        """The value of each option of resolved.opts, those without one left out."""
+        lines = (self.folder / "resolved.opts").read_text().splitlines()
+        return dict(line.split(maxsplit=1) for line in lines if line.startswith("-") and " " in line)
+
+    @property
     def summary(self) -> dict:
         return json.loads((self.folder / "summary.json").read_text())
 
@@ -130,9 +138,11 @@ class Run:
             return opened[name][:]
 
 
-def run_petves(folder: Path, options: str, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:
-    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well."""
-    done = mpirun([PETVES, "-output_dir", str(folder), *options.split()], ranks, timeout)
+def run_petves(folder: Path, options: str | list, ranks: int = 1, good: bool = True, timeout: float = 300) -> Run:
+    """Run petves with its output in `folder`, unless the options say another; with `good` the run must end well. Options
+    are a list where a value has blanks."""
+    words = options.split() if isinstance(options, str) else map(str, options)
+    done = mpirun([PETVES, "-output_dir", str(folder), *words], ranks, timeout)
     run = Run(folder, done.returncode, done.stdout, without_mpirun(done.stderr))
     if good:
         assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"
@@ -147,11 +157,14 @@ def start(folder: Path, options: str, ranks: int = 1, **streams) -> subprocess.P
     return subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, text=True, preexec_fn=heed, **streams)
 
 
+def wait_for(condition) -> None:
+    end = time.time() + 60
+    while not condition():
+        assert time.time() < end, "not within a minute"
+        time.sleep(0.005)
+
+
 def wait_for_rows(folder: Path, rows: int):
     """Until the run has saved so many frames."""
-    end = time.time() + 60
-    while time.time() < end:
-        if (folder / "run.xmf").exists() and (folder / "run.xmf").read_text().count("<Time") >= rows:
-            return
-        time.sleep(0.02)
-    raise AssertionError("no further frame within a minute")
+    path = folder / "run.xmf"
+    wait_for(lambda: path.exists() and path.read_text().count("<Time") >= rows)

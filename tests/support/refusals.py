@@ -4,6 +4,7 @@ import re
 
 import h5py
 import numpy as np
+from harness import run_petves
 
 #: Options of every row, before its own; without cells where -scheme_auto may choose them.
 CELLS = "-domain_cells 32,32 "
@@ -35,6 +36,10 @@ def leaves_files(run, reason):
         assert file.attrs["step"] == series["step"][-1] and file.attrs["time"] == series["time"][-1]
         assert np.isfinite(file["vesicle/markers"][:]).all()
     return summary, series
+
+
+def refused(folder, options, *needles, ranks=1):
+    one_line(run_petves(folder, options, ranks, good=False), *needles)
 
 
 def one_line(run, *needles):

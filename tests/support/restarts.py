@@ -5,13 +5,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import COLUMNS, run_petves
+from harness import run_petves
 
 BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
-TWO = (
-    "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_semi_axes 0.2,0.4 -vesicle_count 2 "
-    "-vesicle_center -0.5,0.2,0.5,-0.2"
-)
+TWO = "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_semi_axes 0.2,0.4"
+TWO += " -vesicle_count 2 -vesicle_center -0.5,0.2,0.5,-0.2"
 SCHEMES = {
     "split": f"{BASE} -scheme_type split",
     "penalty": f"{BASE} -scheme_type penalty",
@@ -26,11 +24,11 @@ SCHEMES = {
 N = 8  # steps to the checkpoint; twice as many in all
 
 
-def without_wall(path: Path, first: int = 0) -> list[str]:
-    """Rows of a series.csv as text from a step on, the column wall left out."""
-    rows = [line.split(",") for line in path.read_text().splitlines()[1:]]
-    wall = COLUMNS.index("wall")
-    return [",".join(row[:wall] + row[wall + 1 :]) for row in rows if int(row[0]) >= first]
+def without_wall(folder: Path) -> list[str]:
+    """Lines of a run's series.csv, its names first, the column wall left out."""
+    rows = [line.split(",") for line in (folder / "series.csv").read_text().splitlines()]
+    wall = rows[0].index("wall")
+    return [",".join(row[:wall] + row[wall + 1 :]) for row in rows]
 
 
 def frames(folder: Path) -> dict[str, np.ndarray]:
@@ -41,16 +39,31 @@ def frames(folder: Path) -> dict[str, np.ndarray]:
     return found
 
 
+def same_frames(one: Path, two: Path, within: float = 0) -> None:
+    """Two run.h5 have the same datasets."""
+    ours, theirs = frames(one), frames(two)
+    assert ours.keys() == theirs.keys()
+    for name in theirs:
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=0, atol=within, err_msg=name)
+
+
+def same_columns(one: dict, two: dict, within: float = 0, without=("wall",)) -> None:
+    """Two runs' columns are the same but for those left out."""
+    assert one.keys() == two.keys()
+    for name in one.keys() - without:
+        np.testing.assert_allclose(two[name], one[name], rtol=0, atol=within, err_msg=name)
+
+
 def last_state(folder) -> dict[str, np.ndarray]:
     """Markers, their velocity, tension and the fluid of a run's checkpoint."""
-    names = ("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/u", "fluid/v", "fluid/p")
     with h5py.File(folder / "checkpoint.h5") as file:
-        return {name: file[name][:] for name in names}
+        return {name: file[name][:] for name in (*STATE, "fluid/p")}
 
 
-def same_state(
-    one, two, tolerance, names=("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/u", "fluid/v")
-):
+STATE = ("vesicle/markers", "vesicle/velocity", "vesicle/tension", "fluid/u", "fluid/v")
+
+
+def same_state(one, two, tolerance, names=STATE):
     for name in names:
         assert one[name].shape == two[name].shape and np.isfinite(one[name]).all()
         assert np.abs(two[name] - one[name]).max() <= tolerance, f"{name}: {np.abs(two[name] - one[name]).max():.1e}"

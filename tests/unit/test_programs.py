@@ -8,16 +8,9 @@ from harness import PROGRAMS, mpirun, without_mpirun
 
 NAMES = sorted(path.stem for path in Path(__file__).parent.glob("*/test_*.c"))
 #: Ranks of those whose subject they are; all others run on 1 and 3.
-RANKS = {
-    "test_layout": (1, 2, 3, 4, 5, 8),
-    "test_markers": (1, 2, 3, 5),
-    "test_fast_solve": (1, 2, 3, 5),
-    "test_stream": (1, 2, 3, 5),
-    "test_files": (1, 2, 3, 4),
-    "test_adjoint": (1, 3, 8),
-    "test_nearfield": (1, 3, 5),
-    "test_direct": (1,),
-}
+RANKS = dict.fromkeys(("test_markers", "test_fast_solve", "test_stream"), (1, 2, 3, 5))
+RANKS |= dict(test_layout=(1, 2, 3, 4, 5, 8), test_files=(1, 2, 3, 4), test_adjoint=(1, 3, 8))
+RANKS |= dict(test_nearfield=(1, 3, 5), test_direct=(1,))
 #: Facts of those that state fewer than 20.
 FEW = {"test_near_cells": 14, "test_nearfar": 11, "test_nearfield": 17}
 
