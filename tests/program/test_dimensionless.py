@@ -75,7 +75,7 @@ def test_an_option_replaces_its_alternatives_of_a_file(words, found, tmp_path):
     )
     outer.write_text(f"-options_file {inner}\n" + words.replace(" -", "\n-"))
     for name, scene in (("typed", f"-options_file {inner} {words}"), ("file", f"-options_file {outer}")):
-        given = options(run_petves(tmp_path / name, f"{scene} {SMALL} -time_end 0"))
+        given = run_petves(tmp_path / name, f"{scene} {SMALL} -time_end 0").resolved
         for option, value in found.items():
             assert float(given[option].split(",")[0]) == pytest.approx(value, rel=1e-9), (name, option)
         assert ("-vesicle_area" in given) != ("-vesicle_semi_axes" in found)
