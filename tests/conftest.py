@@ -29,10 +29,8 @@ def cached_run(tmp_path_factory):
 
 
 #: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.
-LONG = (
-    "views runs newcomer docs programs metamorphic valgrind accuracy studies fuzz damaged output_faults chart".split()
-)
-LONG += "interrupted stability restart python tools one_folder contrast coupled_accuracy elastic baselines".split()
+LONG = "views runs newcomer docs programs metamorphic valgrind accuracy studies fuzz damaged".split()
+LONG += "output_faults chart interrupted stability restart python tools one_folder contrast coupled_accuracy elastic baselines".split()
 
 
 def pytest_configure(config):

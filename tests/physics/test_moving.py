@@ -1,7 +1,6 @@
 """Bodies that move: seen from a body that rests the same, against boundary integrals, to second order in time, through
 the seam of a box, with inertia of the fluid, ranks, restarts, files, and what they run into."""
 
-
 import h5py
 import numpy as np
 import pytest

@@ -70,8 +70,7 @@ def test_restart_on_other_ranks(name, ranks, straight, tmp_path):
 @pytest.mark.parametrize("name", ["order_2", "two_vesicles"])
 def test_a_shorter_run_goes_on_to_another_end(name, straight, tmp_path):
     """The same options give the same bits twice. It goes on from its end, a step at which the long run wrote no checkpoint:
-    solvers that keep something from step to step find it again. The frame that was saved because the first part ended goes.
-    """
+    solvers that keep something from step to step find it again. The frame saved at the end of the first part goes."""
     whole = straight(name)
     folder = tmp_path / "run"
     run_petves(folder, f"{SCHEMES[name]} -time_end 0.12", ranks=2)
