@@ -65,10 +65,11 @@ static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, Instant at, Vec X, cons
 
 static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
   char message[PETVES_MAX_MESSAGE];
-  Instant at = {memory[0]};
+  Instant at = {0};
   PetscScalar *place;
   PetscFunctionBeginUser;
   if (!OlderBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  at.t = memory[0];
   if (s->state.place) {
     PetscCall(VecDuplicate(s->state.place, &at.place));
     PetscCall(VecGetArray(at.place, &place));

@@ -53,7 +53,7 @@ def powers(text: str) -> tuple[int, int]:
         found = re.fullmatch(rf"{word}(?:\^(\d+))?", part)
         return int(found[1] or 1) if found else 0
 
-    return power("length", over), power("time", over) - power("time", under)
+    return power("length", over) - power("length", under), power("time", over) - power("time", under)
 
 
 @pytest.fixture(scope="module")
