@@ -44,7 +44,7 @@ simulation.library = lambda: Library(loaded)
 with petves.Simulation(domain_cells=(256, 256), flow_type="shear", time_step=0.005, output_every=10) as sim:
     sim.run(until=0.025)
     shares = []
-    for block in range(8):  # of twenty steps: to begin a run takes as long as a dozen callbacks
+    for block in range(32):  # of twenty steps: to begin a run takes as long as a dozen callbacks
         seconds, begin = 0.0, time.process_time()
         sim.run(until=sim.time + 0.1, callback=look)
         shares.append((time.process_time() - begin - seconds) / seconds)
