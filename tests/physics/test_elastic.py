@@ -279,6 +279,26 @@ def test_permeable_vesicles(tmp_path):
         assert angle(run) == pytest.approx(theta, abs=1e-3)
 
 
+def test_area_grows_by_the_law_of_water(tmp_path):
+    """dA/dt = P INT (f.n + Pi) ds, f of tension and bending by the markers' Fourier series, Pi = 3 A0/A - 1."""
+    water = "-membrane_permeability 0.05 -membrane_osmotic 3,1 -time_step 0.01 -time_end 0.5 -coupled_ksp_rtol 1e-12"
+    run = run_petves(tmp_path, f"{ELLIPSE} -vesicle_bending 1 {water}")
+    X, U, tension = (run.saved(f"vesicle/{name}", "run.h5")[-1] for name in ("markers", "velocity", "tension"))
+    wave = 1j * np.fft.fftfreq(len(X), 1 / len(X))[:, None]
+    slope = np.fft.ifft(wave * np.fft.fft(X, axis=0), axis=0).real
+    size = np.linalg.norm(slope, axis=1, keepdims=True)
+
+    def along(values):  # the derivative by the arc length
+        return np.fft.ifft(wave * np.fft.fft(values, axis=0), axis=0).real / size
+
+    tangent = along(X)
+    normal = tangent @ [[0, -1], [1, 0]]
+    force = along(tension[:, None] * tangent) - along(along(along(tangent)))
+    osmotic = 3 * 0.7 * math.pi / run.series["area"][-1] - 1
+    grown, passed = (np.sum(size[:, 0] * values) for values in ((U * normal).sum(1), (force * normal).sum(1) + osmotic))
+    assert grown == pytest.approx(0.05 * passed, rel=1e-6) and grown > 0
+
+
 def test_two_permeable_vesicles(tmp_path):
     """In a box with a wall: the same on other ranks and after a restart, in few iterations."""
     pair = TWO.replace(" -vesicle_viscosity_ratio 3,.5", "").replace("-membrane_law green -membrane_viscosity .5", "")
