@@ -329,6 +329,8 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   const SceneRule forces[] = {
     {free && SceneHasGravity(s),
      "-fluid_gravity {-fluid_gravity}: not with -domain_bc_x free, where a body under a force has no finite velocity in two dimensions; allowed: walls, or periodic boundaries"},
+    {s->potential.strength > 0 && vesicles == 1,
+     "-contact_potential {-contact_potential}: between the membranes of different vesicles, and there is one; allowed: 0, or -vesicle_count 2 and more"},
     {f->drive == DRIVE_FLUX && !coupled,
      "-flow_drive flux: not with -scheme_type {-scheme_type}; allowed: pressure, or coupled"}};
   const SceneRule viscosities[] = {

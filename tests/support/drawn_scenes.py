@@ -216,7 +216,7 @@ class Draw:
         if "vesicle_viscosity_ratio" not in self.numbers and self.chance(0.15):
             self.numbers["membrane_permeability"] = pick([0.01, 0.1]) * R0 / nu
             self.numbers["membrane_osmotic"] = bending / R0**3 * np.array([pick([0, 1, 3]), pick([0, 1])])
-        if self.chance(0.2):
+        if self.chance(0.2) and count > 1:
             self.numbers |= {
                 "contact_potential": pick([0.1, 1]) * bending / R0**3,
                 "contact_potential_distance": R0 * pick([0.4, 1]),
