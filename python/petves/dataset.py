@@ -24,7 +24,7 @@ _HAVE = {
     "length^2/time": "nu flux stream_function",
     "length^2/time^2": "p normal_stress_wall normal_stress pressure_drop wall_shear_stress",
     "length^3/time^2": "tension obstacle_force obstacle_force_x obstacle_force_y",
-    "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact energy_stretching obstacle_torque",
+    "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact energy_stretching energy_potential obstacle_torque",
     "length^5/time^2": "c_b",
     "1/time": "div_max surface_div_max vorticity obstacle_rotation",
     "length/time^2": "pressure_gradient",

@@ -10,7 +10,7 @@ import numpy as np
 from petves.errors import Error
 
 #: What energies there are, as in the columns energy_NAME.
-ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching")
+ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching", "potential")
 ENERGY_COLUMNS = [f"energy_{name}" for name in ENERGIES]
 
 
@@ -158,7 +158,7 @@ class Measures:
 
     @property
     def energy(self) -> float:
-        """Energy of all kinds (length^4/time^2): kinetic, bending, gravity, contact, stretching."""
+        """Energy of all kinds (length^4/time^2): kinetic, bending, gravity, contact, stretching, potential."""
         return sum(self._row[self._columns[name]] for name in ENERGY_COLUMNS if name in self._columns)
 
     @property

@@ -21,7 +21,7 @@ typedef enum {
 } ForceReach;
 
 typedef struct {
-  const char *name; /* its energy is in the column energy_NAME of series.csv */
+  const char *name; /* of this force alone; its energy is in the column energy_NAME of series.csv */
   ForceReach reach;
   void *context;                                                    /* first argument of all operations */
   PetscErrorCode (*place)(void *, Instant at, const PetscReal X[]); /* at X*[2M] of all vesicles, at an instant */

@@ -11,13 +11,12 @@ typedef struct {
 
 typedef struct {
   Membrane membrane;  /* borrowed */
+  PetscReal *kappa0;  /* [TIMES M] curvature that bending prefers, at the points */
   MomentPoint *point; /* [TIMES M] of all vesicles, where the force is placed: dense blocks may be of any of them */
+  MomentPoint *other; /* [TIMES M] work: of other markers */
+  PetscReal *a, *b;   /* [2 TIMES M] work: X_s and X_ss at the points of one vesicle */
   PetscScalar *at;    /* [2n] grad E_B - N X* at the own markers */
 } Moment;
-
-static MomentPoint *MomentPointsOf(const Moment *o, PetscInt v) {
-  return o->point + TIMES * o->membrane->layout->start[v];
-}
 
 static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a[2], const PetscReal b[2]) {
   const PetscReal q = PetscSqr(a[0]) + PetscSqr(a[1]), lambda = PetscSqrtReal(q);
@@ -33,90 +32,77 @@ static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a
   return o;
 }
 
-/* X_s and X_ss of one vesicle's X[2n] at the points: a[2 TIMES n], b[2 TIMES n]. */
-static void MomentSlopes(Membrane m, PetscInt v, const PetscScalar X[], PetscReal a[], PetscReal b[]) {
+/* a, b = X_s, X_ss of one vesicle's X[2n] at the points. */
+static void MomentSlopes(const Moment *o, PetscInt v, const PetscScalar X[]) {
+  const Membrane m = o->membrane;
   const PetscInt n = LayoutCount(m->layout, v);
   PetscScalar *own = m->work.bending;
   for (int power = 1; power <= 2; power++) {
     (void)PetscArrayzero(own, 2 * n);
     SpectralDerivative(m->spectral[v], power, PetscPowRealInt(n / m->arc[v], power), X, own);
-    TrigonometricPoints(n, own, TIMES, power == 1 ? a : b);
+    TrigonometricPoints(n, own, TIMES, power == 1 ? o->a : o->b);
   }
 }
 
-/* G += alpha times the transpose of MomentSlopes for the c_b ds of a point; the first derivative is antisymmetric. */
-static void MomentSlopesTranspose(Membrane m, PetscInt v, PetscReal alpha, const PetscReal a[], const PetscReal b[],
-                                  PetscScalar G[]) {
+/* G += alpha times the transpose of MomentSlopes of a, b for the c_b ds of a point; the first derivative is
+   antisymmetric. */
+static void MomentSlopesTranspose(const Moment *o, PetscInt v, PetscReal alpha, PetscScalar G[]) {
+  const Membrane m = o->membrane;
   const PetscInt n = LayoutCount(m->layout, v);
   const PetscReal size = alpha * m->bending * m->part[v] * m->ds[v] / TIMES;
   PetscScalar *own = m->work.bending;
   for (int power = 1; power <= 2; power++) {
-    TrigonometricPointsTranspose(n, power == 1 ? a : b, TIMES, own);
+    TrigonometricPointsTranspose(n, power == 1 ? o->a : o->b, TIMES, own);
     SpectralDerivative(m->spectral[v], power, (power == 1 ? -size : size) * PetscPowRealInt(n / m->arc[v], power), own,
                        G);
   }
 }
 
-/* The points of one vesicle's markers X[2n]. */
-static PetscErrorCode MomentPoints(Membrane m, PetscInt v, const PetscScalar X[], MomentPoint point[]) {
-  const PetscInt n = LayoutCount(m->layout, v);
-  PetscReal *a, *b, *kappa0, *own;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(2 * n, &own, 2 * TIMES * n, &a, 2 * TIMES * n, &b, 2 * TIMES * n, &kappa0));
-  for (PetscInt k = 0; k < n && m->memory; k++) own[2 * k] = m->memory[m->layout->start[v] + k];
-  TrigonometricPoints(n, own, TIMES, kappa0);
-  MomentSlopes(m, v, X, a, b);
-  for (PetscInt q = 0; q < TIMES * n; q++) point[q] = MomentOf(m->moment, kappa0[2 * q], a + 2 * q, b + 2 * q);
-  PetscCall(PetscFree4(own, a, b, kappa0));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* The points of one vesicle's markers X[2n], among those of all. */
+static void MomentPoints(const Moment *o, PetscInt v, const PetscScalar X[], MomentPoint point[]) {
+  const PetscInt *start = o->membrane->layout->start, first = TIMES * start[v];
+  MomentSlopes(o, v, X);
+  for (PetscInt q = first; q < TIMES * start[v + 1]; q++)
+    point[q] = MomentOf(o->membrane->moment, o->kappa0[q], o->a + 2 * (q - first), o->b + 2 * (q - first));
 }
 
-/* G += alpha grad E_B, or with a motion V[2n] that is not NULL alpha N V, at the markers of these points. */
-static PetscErrorCode MomentAdd(Membrane m, PetscInt v, PetscReal alpha, const MomentPoint point[],
-                                const PetscScalar V[], PetscScalar G[]) {
-  const PetscInt fine = TIMES * LayoutCount(m->layout, v);
-  PetscReal *a, *b;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * fine, &a, 2 * fine, &b));
-  if (V) MomentSlopes(m, v, V, a, b);
-  for (PetscInt q = 0; q < fine; q++) {
-    const MomentPoint *o = &point[q];
-    PetscReal change = V ? 0 : o->change;
-    for (int c = 0; c < 2; c++) change += o->by_a[c] * a[2 * q + c] + o->by_b[c] * b[2 * q + c];
+/* G += alpha grad E_B, or with a motion V[2n] that is not NULL alpha N V, at the markers of one vesicle's points. */
+static void MomentAdd(const Moment *o, PetscInt v, PetscReal alpha, const MomentPoint point[], const PetscScalar V[],
+                      PetscScalar G[]) {
+  const PetscInt *start = o->membrane->layout->start, first = TIMES * start[v];
+  if (V) MomentSlopes(o, v, V);
+  for (PetscInt q = first; q < TIMES * start[v + 1]; q++) {
+    const MomentPoint *at = &point[q];
+    PetscReal *a = o->a + 2 * (q - first), *b = o->b + 2 * (q - first), change = at->change;
+    if (V) change = at->by_a[0] * a[0] + at->by_a[1] * a[1] + at->by_b[0] * b[0] + at->by_b[1] * b[1];
     for (int c = 0; c < 2; c++) {
-      a[2 * q + c] = o->weight * change * (o->by_a[c] + (V ? 0 : 0.5 * change * o->weight_by_a[c]));
-      b[2 * q + c] = o->weight * change * o->by_b[c];
+      a[c] = at->weight * change * (at->by_a[c] + (V ? 0 : 0.5 * change * at->weight_by_a[c]));
+      b[c] = at->weight * change * at->by_b[c];
     }
   }
-  MomentSlopesTranspose(m, v, alpha, a, b, G);
-  PetscCall(PetscFree2(a, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  MomentSlopesTranspose(o, v, alpha, G);
 }
 
 static PetscErrorCode MomentPlace(void *context, Instant t, const PetscReal X[]) {
   const Moment *o = (const Moment *)context;
-  const Membrane m = o->membrane;
-  const Layout l = m->layout;
+  const Layout l = o->membrane->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(o->at, 2 * l->n));
-  for (PetscInt v = 0; v < l->bodies; v++) PetscCall(MomentPoints(m, v, X + 2 * l->start[v], MomentPointsOf(o, v)));
+  for (PetscInt v = 0; v < l->bodies; v++) MomentPoints(o, v, X + 2 * l->start[v], o->point);
   for (PetscInt v = l->own; v < l->end; v++) {
     PetscScalar *at = o->at + 2 * LayoutOffset(l, v);
-    PetscCall(MomentAdd(m, v, 1, MomentPointsOf(o, v), NULL, at));
-    PetscCall(MomentAdd(m, v, -1, MomentPointsOf(o, v), X + 2 * l->start[v], at));
+    MomentAdd(o, v, 1, o->point, NULL, at);
+    MomentAdd(o, v, -1, o->point, X + 2 * l->start[v], at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode MomentRate(void *context, PetscReal alpha, const PetscScalar V[], PetscScalar F[]) {
   const Moment *o = (const Moment *)context;
-  const Membrane m = o->membrane;
-  const Layout l = m->layout;
+  const Layout l = o->membrane->layout;
   PetscFunctionBeginUser;
-  for (PetscInt v = l->own; v < l->end; v++) {
-    const PetscInt at = LayoutOffset(l, v);
-    PetscCall(MomentAdd(m, v, alpha, MomentPointsOf(o, v), V + 2 * at, F + 2 * at));
-  }
+  for (PetscInt v = l->own; v < l->end; v++)
+    MomentAdd(o, v, alpha, o->point, V + 2 * LayoutOffset(l, v), F + 2 * LayoutOffset(l, v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,14 +115,13 @@ static PetscErrorCode MomentKnown(void *context, PetscReal alpha, const PetscSca
 
 static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, PetscReal K[]) {
   const Moment *o = (const Moment *)context;
-  const Membrane m = o->membrane;
-  const PetscInt n = LayoutCount(m->layout, v);
+  const PetscInt n = LayoutCount(o->membrane->layout, v);
   PetscReal *unit;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * n, &unit));
   for (PetscInt k = 0; k < 2 * n; k++) {
     unit[k] = 1;
-    PetscCall(MomentAdd(m, v, alpha, MomentPointsOf(o, v), unit, K + 2 * n * k));
+    MomentAdd(o, v, alpha, o->point, unit, K + 2 * n * k);
     unit[k] = 0;
   }
   PetscCall(PetscFree(unit));
@@ -146,17 +131,16 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
 /* F -= grad E_B, E[vesicles] += E_B of the own vesicles at the markers X[2n]; NULL: not wanted. */
 static PetscErrorCode MomentOfMarkers(const Moment *o, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
   const Membrane m = o->membrane;
-  MomentPoint *point;
+  const Layout l = m->layout;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(TIMES * m->layout->n, &point));
-  for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
-    const PetscInt at = 2 * LayoutOffset(m->layout, v), fine = TIMES * LayoutCount(m->layout, v);
+  for (PetscInt v = l->own; v < l->end; v++) {
+    const PetscInt at = 2 * LayoutOffset(l, v);
     const PetscReal size = m->bending * m->part[v] * m->ds[v] / TIMES;
-    PetscCall(MomentPoints(m, v, X + at, point));
-    for (PetscInt q = 0; q < fine && E; q++) E[v] += 0.5 * size * point[q].weight * PetscSqr(point[q].change);
-    if (F) PetscCall(MomentAdd(m, v, -1, point, NULL, F + at));
+    MomentPoints(o, v, X + at, o->other);
+    for (PetscInt q = TIMES * l->start[v]; q < TIMES * l->start[v + 1] && E; q++)
+      E[v] += 0.5 * size * o->other[q].weight * PetscSqr(o->other[q].change);
+    if (F) MomentAdd(o, v, -1, o->other, NULL, F + at);
   }
-  PetscCall(PetscFree(point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,7 +155,7 @@ static PetscErrorCode MomentEnergy(void *context, Instant t, const PetscScalar X
 static PetscErrorCode MomentDestroy(void *context) {
   Moment *o = (Moment *)context;
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(o->point, o->at));
+  PetscCall(PetscFree6(o->kappa0, o->point, o->other, o->a, o->b, o->at));
   PetscCall(PetscFree(context));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,7 +167,15 @@ PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *
   if (m->moment == MOMENT_QUADRATIC || m->bending == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&o));
   o->membrane = m;
-  PetscCall(PetscCalloc2(TIMES * m->layout->M, &o->point, 2 * m->layout->n, &o->at));
+  const PetscInt points = TIMES * m->layout->M;
+  PetscCall(PetscCalloc6(points, &o->kappa0, points, &o->point, points, &o->other, 2 * points, &o->a, 2 * points, &o->b,
+                         2 * m->layout->n, &o->at));
+  for (PetscInt v = 0; v < m->layout->bodies && m->memory; v++) {
+    const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
+    for (PetscInt k = 0; k < n; k++) o->b[2 * k] = m->memory[first + k];
+    TrigonometricPoints(n, o->b, TIMES, o->a);
+    for (PetscInt q = 0; q < TIMES * n; q++) o->kappa0[TIMES * first + q] = o->a[2 * q];
+  }
   *force = (Force){.name = "bending",
                    .reach = FORCE_WITHIN,
                    .context = o,

@@ -58,9 +58,8 @@ PETSC_EXTERN PetscErrorCode ObstaclesPlace(Obstacles obstacles, Instant at);
 
 /* ObstaclesCheck - whether moving bodies at an instant keep the distance from walls and from other obstacles, images
    among them, down to which their forces are right: KERNEL_FOLDED_CELLS cells and SCENE_LEAST_GAP edges.
-   ObstaclesCheckStride
-   - whether no body steps over what it would run into: from one instant to another it goes by at most half its width.
-   message is empty, or says which do not. Not collective. */
+   ObstaclesCheckStride - whether no body steps over what it would run into: from one instant to another it goes by at
+   most half its width. message is empty, or says which do not. Not collective. */
 PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Scene scene, Instant at,
                                            char message[PETVES_MAX_MESSAGE]);
 PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, Instant from, Instant to,

@@ -9,9 +9,9 @@ typedef struct {
   PetscReal seams;                     /* part of ForcesSeams, of the own markers, there */
 } Potential;
 
-/* x^p, by products where p is an integer. */
+/* x^p, by products where p is a small integer. */
 static PetscReal PotentialPower(PetscReal x, PetscReal p) {
-  const int n = (int)p;
+  const int n = (int)PetscMin(p, 64);
   return p == n ? PetscPowRealInt(x, n) : PetscPowReal(x, p);
 }
 
@@ -32,7 +32,7 @@ static PetscReal PotentialAdd(const Potential *o, PetscReal alpha, const PetscSc
   PetscReal seams = 0;
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt w = 0; w < l->bodies; w++) {
-      const PetscBool both = w >= l->own && w < l->end ? PETSC_TRUE : PETSC_FALSE; /* are own: the pair is met once */
+      const PetscBool both = w >= l->own && w < l->end; /* are own: the pair is met once */
       const PetscReal half = 0.5 * m->ds[v] * m->ds[w];
       for (PetscInt i = l->start[v]; i < l->start[v + 1] && w != v && !(both && w < v); i++)
         for (PetscInt j = l->start[w]; j < l->start[w + 1]; j++) {
@@ -117,7 +117,7 @@ PetscErrorCode ForceCreate_Potential(Bodies bodies, Grid grid, Scene scene, Forc
     o->over_period[d] = 1 / o->period[d];
   }
   PetscCall(PetscMalloc2(2 * l->M, &o->all, 2 * l->n, &o->at));
-  *force = (Force){.name = "contact",
+  *force = (Force){.name = "potential",
                    .reach = FORCE_BETWEEN,
                    .context = o,
                    .place = PotentialPlace,

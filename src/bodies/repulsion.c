@@ -45,7 +45,7 @@ static void SpringAddBody(Repulsion r, Instant at, PetscInt marker, int side, Pe
 }
 
 static PetscBool SpringHasBody(const Spring *s) {
-  return s->body[0] || s->body[1] ? PETSC_TRUE : PETSC_FALSE;
+  return s->body[0] || s->body[1];
 }
 
 /* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
@@ -69,19 +69,22 @@ static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const Cu
 static PetscInt FindWallSprings(Repulsion r, Instant at, const PetscReal X[], Spring spring[]) {
   const Grid g = r->grid;
   const Layout l = r->bodies->layout;
+  const PetscInt vesicles = r->bodies->vesicles;
   PetscInt count = 0;
-  for (PetscInt v = 0; v < l->bodies; v++)
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    if (v >= vesicles && !r->bodies->obstacles->motion[v - vesicles].free) continue;
     for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
       for (int side = 0; side < 4; side++) {
         const int d = side / 2;
         const PetscReal sign = side % 2 ? -1 : 1;
         const PetscReal distance = sign * (X[2 * k + d] - (side % 2 ? g->hi[d] : g->lo[d]));
         if (!g->wall[d] || g->free || distance >= RepulsionReach(&r->law)) continue;
-        spring[count] = (Spring){.n = v < r->bodies->vesicles, .marker = {k}, .weight = {1}, .distance = distance};
+        spring[count] = (Spring){.n = v < vesicles, .marker = {k}, .weight = {1}, .distance = distance};
         spring[count].normal[d] = sign;
-        if (v >= r->bodies->vesicles) SpringAddBody(r, at, k, 0, 1, X, &spring[count]);
+        if (v >= vesicles) SpringAddBody(r, at, k, 0, 1, X, &spring[count]);
         SpringSetLaw(&r->law, r->bodies->ds[v], X, &spring[count++]);
       }
+  }
   return count;
 }
 
@@ -158,6 +161,7 @@ PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, 
     if (!SpringHasBody(s)) continue;
     for (int c = 0; c < 6; c++)
       if (s->body[c / 3]) along += s->pull[c / 3][c % 3] * rates[3 * (s->body[c / 3] - 1) + c % 3];
+    if (known) r->spring[k].shifted = along;
     const PetscReal T = alpha * s->stiffness * (SpringStretch(s, r->all) + along) - (known ? s->push : 0);
     if (F) SpringPull(s, r->membrane->layout, alpha * s->stiffness * along, F);
     for (int c = 0; c < 6 && b; c++) {
@@ -178,7 +182,7 @@ static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const P
     PetscReal apart = s->beyond - s->distance * s->normal[0];
     if (s->n < 3 && !SpringHasBody(s)) continue; /* of a wall or an obstacle */
     for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
-    *sum += (s->push - s->stiffness * SpringStretch(s, r->all)) * s->normal[0] * apart;
+    *sum += (s->push - s->stiffness * (SpringStretch(s, r->all) + s->shifted)) * s->normal[0] * apart;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

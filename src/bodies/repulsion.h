@@ -25,7 +25,8 @@ typedef struct {
   PetscReal energy;    /* at X* (length^4/time^2) */
   PetscInt body[2];    /* of the point, of the edge: number of the free body, from 1; 0: none */
   PetscReal pull[2][3];
-  PetscReal beyond; /* SUM weight_i x_i of the body's markers (length) */
+  PetscReal beyond;  /* SUM weight_i x_i of the body's markers (length) */
+  PetscReal shifted; /* pull.q of the places for which the force was asked for last (length) */
 } Spring;
 
 typedef struct _p_Repulsion *Repulsion;

@@ -71,11 +71,10 @@ PetscErrorCode ImageBlockFill(const ImageBlock *b, PetscReal value[IMAGE_ROWS][I
   const DenseView across = {a->across[0], IMAGE_NODES, PAIRS, IMAGE_NODES};
   PetscCall(DenseProductWithin(PETSC_FALSE, wave, across, 1, value[0][0] + IMAGE_SHIFT, IMAGE_WIDTH));
   for (int row = 0; row < IMAGE_ROWS; row++)
-    for (int source = 0; source < IMAGE_ROWS;
-         source++) { /* offsets below zero by symmetry, and the free lattice's part */
+    for (int source = 0; source < IMAGE_ROWS; source++) {
       const OffsetTable *t = b->lattice;
       const PetscInt at = (row - source - b->below + t->size[1]) * (2 * t->size[0] + 1) + t->size[0];
-      PetscReal *line = value[row][source] + IMAGE_SHIFT;
+      PetscReal *line = value[row][source] + IMAGE_SHIFT; /* below zero by symmetry; then the free lattice's part */
       for (PetscInt i = 1; i <= IMAGE_SHIFT && i - b->half <= IMAGE_SHIFT; i++)
         line[-i] = b->half ? -line[i - b->half] : line[i];
       for (PetscInt i = -IMAGE_SHIFT; i <= IMAGE_SHIFT; i++) line[i] += t->value[b->source][at + i];

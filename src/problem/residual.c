@@ -1,5 +1,6 @@
 #include "problem/residual.h"
 #include "bodies/freebodies.h"
+#include "bodies/repulsion.h"
 
 /* (2) F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), and the unknown F of obstacles. */
 static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
@@ -39,14 +40,12 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 /* (5) m R q, (6) R^T F + load + the force of contact; y: the rows of obstacles. */
 static PetscErrorCode ReducedBodies(Reduced s, const CoupledProblem *q, const PetscScalar x[], PetscScalar y[]) {
   const Unknowns u = s->unknowns;
-  const Obstacles o = u->coupling->bodies->obstacles;
-  PetscScalar *push;
+  const Coupling c = u->coupling;
+  const PetscInt markers = BodiesObstacleNumbers(c->bodies);
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(FreeBodiesOwn(o), &push));
-  FreeBodiesRows(o, q ? q->load : NULL, x + u->velocity, y);
-  PetscCall(UnknownsPush(u, x, NULL, push));
-  for (PetscInt k = 0; k < FreeBodiesOwn(o); k++) y[2 * o->layout->n + k] -= push[k];
-  PetscCall(PetscFree(push));
+  FreeBodiesRows(c->bodies->obstacles, q ? q->load : NULL, x + u->velocity, y);
+  PetscCall(
+      RepulsionBodies(c->forces, PETSC_FALSE, -1 / c->fluid->a0, x, x + u->velocity + markers, NULL, y + markers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

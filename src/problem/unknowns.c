@@ -90,20 +90,13 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
   LawScale(u->coupling->law, weight, inverse, y + UnknownsEdges(u));
 }
 
-PetscErrorCode UnknownsPush(Unknowns u, const PetscScalar x[], PetscScalar F[], PetscScalar push[]) {
-  const Coupling c = u->coupling;
-  PetscFunctionBeginUser;
-  PetscCall(RepulsionBodies(c->forces, PETSC_FALSE, 1 / c->fluid->a0, x,
-                            x + u->velocity + BodiesObstacleNumbers(c->bodies), F, push));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode UnknownsForce(Unknowns u, const PetscScalar x[], PetscScalar F[]) {
   const Coupling c = u->coupling;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(F, u->velocity));
   PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, F));
-  PetscCall(UnknownsPush(u, x, F, NULL));
+  PetscCall(RepulsionBodies(c->forces, PETSC_FALSE, 1 / c->fluid->a0, x,
+                            x + u->velocity + BodiesObstacleNumbers(c->bodies), F, NULL));
   LawForce(c->law, 1, x + UnknownsEdges(u), F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,11 +42,6 @@ PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScala
    Collective. */
 PETSC_EXTERN PetscErrorCode UnknownsForce(Unknowns unknowns, const PetscScalar x[], PetscScalar F[]);
 
-/* UnknownsPush - of contact with free bodies, minus the forces for the unknowns x: what the bodies' velocities have of
-   those on own vesicles is added to F[2n], and all of those on own bodies to push[3 own free] (NULL: not wanted).
-   Collective. */
-PETSC_EXTERN PetscErrorCode UnknownsPush(Unknowns unknowns, const PetscScalar x[], PetscScalar F[], PetscScalar push[]);
-
 /* UnknownsEdges - index at which the law's unknowns start in a rank's part. Not collective. */
 static inline PetscInt UnknownsEdges(Unknowns u) {
   return u->velocity + u->solid;

@@ -31,18 +31,34 @@ def test_period_of_a_doublet(tmp_path, rate, H):
 def test_energy_of_a_doublet_falls(tmp_path):
     """At rest, to a minimum in which the pair has flat sides; its contact energy is the sum over markers."""
     run = run_petves(tmp_path, f"{FREE} {PAIR} {BOUND} -contact_potential 2 -time_step .05 -time_end 5")
-    energy = run.series["energy_bending"] + run.series["energy_contact"]
+    energy = run.series["energy_bending"] + run.series["energy_potential"]
     assert np.all(np.diff(energy) < 1e-6 * abs(energy[0])) and energy[-1] < energy[0] - 0.1
     X = run.saved("vesicle/markers", "run.h5")[-1].reshape(2, -1, 2)
     z = 0.4 / np.linalg.norm(X[0][:, None] - X[1][None], axis=-1)
-    assert run.series["energy_contact"][-1] == pytest.approx(
+    assert run.series["energy_potential"][-1] == pytest.approx(
         2 * np.sum(z**4 - 2 * z**2) * (2 * math.pi / len(z)) ** 2
     )
 
 
+def test_beside_a_free_body(tmp_path):
+    """A repulsion that reaches nothing changes nothing, nor do the two forces take one another's place."""
+    small = PAIR.replace(f"{0.9 * math.pi!r}", ".8").replace("-vesicle_bending 1", "-vesicle_bending .1")
+    scene = (
+        f"{small} {BOX} -vesicle_center -.6,.1,.55,0 -obstacle_shape posts -obstacle_radius .5 -obstacle_center 1.8,0"
+    )
+    scene += " -obstacle_free all -time_end .2"
+    alone, both = (
+        run_petves(tmp_path / str(len(more)), f"{scene} {more}").series
+        for more in ("", "-contact_repulsion 1 -contact_repulsion_range .01")
+    )
+    for name in ("energy_potential", "center_x_1", "obstacle_velocity_x_1", "coupled_its"):
+        assert np.array_equal(alone[name], both[name])
+    assert "energy_contact" in both and not both["energy_contact"].any()
+
+
 def test_ranks_restart_and_seams(tmp_path):
     """In a channel, and the same with the pair over the seam of its period."""
-    names = ("center_y_1", "inclination_2", "energy_contact", "viscosity", "normal_stress")
+    names = ("center_y_1", "inclination_2", "energy_potential", "viscosity", "normal_stress")
     small = PAIR.replace(f"{0.9 * math.pi!r}", ".8").replace("-vesicle_bending 1", "-vesicle_bending .1")
     scene = f"{small} {BOX} -coupled_ksp_rtol 1e-12 -vesicle_center"
     found = agree(tmp_path, f"{scene} -.6,.1,.55,0", 0.2, 0.4, names, (3,))["whole"].series

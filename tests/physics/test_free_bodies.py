@@ -183,6 +183,18 @@ def test_stress_of_a_sheared_channel(tmp_path):
         np.testing.assert_allclose(series[f"{name}_wall"], series[name], rtol=1e-9)
 
 
+def test_stress_of_a_contact_over_the_seam(tmp_path):
+    """A vesicle and a disc that push one another: the stress is that of the pair half a period on, on odd cells."""
+    options = "-domain_box 0,4,0,4 -domain_cells 33,33 -domain_bc_x periodic -flow_type shear -flow_center_y 2"
+    options += " -vesicle_semi_axes .4,.6 -obstacle_shape posts -obstacle_radius .45 -obstacle_free all -time_step .2"
+    options += " -time_end .8 -coupled_ksp_rtol 1e-12 -contact_repulsion 2000 -contact_repulsion_range .25"
+    stress = []
+    for vesicle, disc in ((1.5, 2.46), (3.5, 0.46)):
+        places = f"-vesicle_center {vesicle},2.1 -obstacle_center {disc},1.9"
+        stress.append(run_petves(tmp_path / str(vesicle), f"{options} {places}").series["normal_stress"][1:])
+    assert stress[1] == pytest.approx(stress[0], rel=1e-5) and abs(stress[0]).min() > 0.01
+
+
 def test_a_disc_falls_beside_a_vesicle(tmp_path):
     """runs/falling.opts shows what its header says."""
     row = run_petves(tmp_path, f"-options_file {ROOT / 'runs' / 'falling.opts'} -output_dir {tmp_path}").series

@@ -103,7 +103,9 @@ def plot_energy(run: Run, look: Look = PLAIN) -> Path:
     scale, name = next(one for one in scales if one[0] > 1e-12 * largest)
     if len(parts) > 1:
         axes.plot(time, total / scale, "k-", lw=2, label="total $E$")
-    styles = {"bending": "--C0", "kinetic": "-.C1", "gravity": ":C2", "contact": ":C3", "stretching": "--C4"}
+    styles = {"bending": "--C0", "kinetic": "-.C1", "gravity": ":C2", "contact": ":C3", "stretching": "--C4"} | {
+        "potential": "-.C5"
+    }
     for part, values in parts.items():
         axes.plot(time, values / scale, styles[part], label=f"{part} $E_{part[0].upper()}$")
     dress(axes, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
