@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Sequence
 
 import numpy as np
 
+from petves.measures import ENERGIES
 from petves.run import Run, RunError
 from petves.views.curves import plot_columns, plot_line, plot_points, plot_walls
 from petves.views.field import FIELDS, OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
@@ -103,9 +104,7 @@ def plot_energy(run: Run, look: Look = PLAIN) -> Path:
     scale, name = next(one for one in scales if one[0] > 1e-12 * largest)
     if len(parts) > 1:
         axes.plot(time, total / scale, "k-", lw=2, label="total $E$")
-    styles = {"bending": "--C0", "kinetic": "-.C1", "gravity": ":C2", "contact": ":C3", "stretching": "--C4"} | {
-        "potential": "-.C5"
-    }
+    styles = dict(zip(ENERGIES, ("--C0", "-.C1", ":C2", ":C3", "--C4", "-.C5")))
     for part, values in parts.items():
         axes.plot(time, values / scale, styles[part], label=f"{part} $E_{part[0].upper()}$")
     dress(axes, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
