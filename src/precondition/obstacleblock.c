@@ -11,7 +11,7 @@ struct _p_ObstacleBlock {
   Obstacles obstacles;   /* borrowed */
   PetscMPIInt root;      /* the rank that has the factor */
   Age age;               /* of the factor, for the coefficient alpha of H */
-  Instant made_at;       /* when which the bodies were where the factor has them */
+  Instant made_at;       /* at which the bodies were where the factor has them */
   float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
   ObstacleModes modes;   /* NULL: dense inverse */
   FreeBlock free;        /* on root, of bodies that move freely; NULL without */
