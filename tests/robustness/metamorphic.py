@@ -49,7 +49,7 @@ OPTIONS = units(
 COLUMNS = units(
     """
     time scalar 0 1; dt scalar 0 1; energy_kinetic scalar 4 -2; energy_bending scalar 4 -2;
-    energy_gravity scalar 4 -2; energy_stretching scalar 4 -2; energy_contact scalar 4 -2; area scalar 2 0; length scalar 1 0;
+    energy_gravity scalar 4 -2; energy_stretching scalar 4 -2; energy_contact scalar 4 -2; energy_potential scalar 4 -2; area scalar 2 0; length scalar 1 0;
     area_error scalar 0 0; length_error scalar 0 0; edge_ratio scalar 0 0; center place 1 0; inclination angle 0 0;
     frequency scalar 0 -1; area_shift scalar 1 0; normal_speed scalar 1 -1; velocity vector 1 -1; gap scalar 1 0;
     viscosity_wall scalar 0 0; viscosity scalar 0 0; normal_stress_wall scalar 2 -2; normal_stress scalar 2 -2;
