@@ -115,14 +115,14 @@ static void FreeBodyTurn(Obstacles o, PetscInt b, Instant to, PetscScalar F[]) {
   for (PetscInt k = 0; k < 2 * n; k++) F[k] += lost[k % 2] / n;
 }
 
-PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal a0, Vec place) {
+PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal time, Vec place) {
   PetscReal *q;
   PetscScalar *y;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * o->free->M, &q));
   PetscCall(FreeBodiesRates(o, force, q));
   PetscCall(VecGetArray(place, &y));
-  for (PetscInt k = 0; k < 3 * o->free->M; k++) y[k] += q[k] / a0;
+  for (PetscInt k = 0; k < 3 * o->free->M; k++) y[k] += time * q[k];
   PetscCall(VecRestoreArray(place, &y));
   PetscCall(PetscFree(q));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,8 +4,8 @@
        u_inf(Y) + E u - C F - beta N N^T F - m R q = 0,      R^T F + load = 0,
 
    m the viscosity around the body over nu, load the force and the torque on it from outside. A body has no mass. Its
-   place, center and angle, is integrated by the formula of the step, with q for the rate, and its markers follow from
-   it, so its shape never changes.
+   place, center and angle, is integrated by an Adams formula (scheme/bdf.h) with q for the rate, and its markers follow
+   from it, so its shape never changes.
 
    Unknowns and residuals of obstacles, and the force of a state, are arrays [2w + 3 own free]: q stands behind F, R^T F
    + load behind the rows of the markers. A place is a vector that every rank has, [3 free]. */
@@ -32,8 +32,8 @@ PETSC_EXTERN PetscErrorCode FreeBodiesBalance(Obstacles obstacles, const PetscRe
    Not collective. */
 PETSC_EXTERN PetscReal FreeBodiesSpeed(Obstacles obstacles, const PetscScalar x[]);
 
-/* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += q/a0. FreeBodiesTurn - the
-   force turns with the bodies from where they have been placed to this place. Collective. */
+/* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += time q. FreeBodiesTurn -
+   the force turns with the bodies from where they have been placed to this place. Collective. */
 PETSC_EXTERN PetscErrorCode FreeBodiesRates(Obstacles obstacles, Vec force, PetscReal q[]);
-PETSC_EXTERN PetscErrorCode FreeBodiesMove(Obstacles obstacles, Vec force, PetscReal a0, Vec place);
+PETSC_EXTERN PetscErrorCode FreeBodiesMove(Obstacles obstacles, Vec force, PetscReal time, Vec place);
 PETSC_EXTERN PetscErrorCode FreeBodiesTurn(Obstacles obstacles, Vec place, Vec force);

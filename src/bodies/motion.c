@@ -3,6 +3,7 @@
 PetscErrorCode InstantCopy(Instant from, Instant *copy) {
   PetscFunctionBeginUser;
   copy->t = from.t;
+  copy->end = from.end;
   if (!from.place) PetscCall(VecDestroy(&copy->place));
   if (from.place && !copy->place) PetscCall(VecDuplicate(from.place, &copy->place));
   if (from.place) PetscCall(VecCopy(from.place, copy->place));

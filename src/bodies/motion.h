@@ -15,10 +15,11 @@ typedef struct {
 } BodyMotion;
 
 /* A time, and where the bodies are then that move freely: center and angle of each, on every rank; NULL: where they
-   were at time 0. */
+   were at time 0. In a step, the place at its end changes by q times `end` (time) with the velocity q of that time. */
 typedef struct {
   PetscReal t;
   Vec place;
+  PetscReal end;
 } Instant;
 
 /* InstantCopy - an instant with a place of its own, which VecDestroy frees. Not collective. */

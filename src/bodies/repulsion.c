@@ -155,6 +155,7 @@ PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, 
   PetscCall(PetscMalloc1(3 * o->free->M, &rates));
   PetscCall(LayoutGather(o->free, 3, q, rates));
   PetscCall(LayoutGather(r->membrane->layout, 2, V, r->all));
+  for (PetscInt k = 0; k < 3 * o->free->M && !known; k++) rates[k] *= o->at.end / PetscAbsReal(alpha);
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
     PetscReal along = 0;

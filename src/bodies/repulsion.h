@@ -44,6 +44,7 @@ struct _p_Repulsion {
    minus the force of each spring T = alpha stiffness (SUM weight normal.V + SUM pull.q), and less its push where it is
    known,
        F[2n own vesicles] += what q has of T, b[3 own free] += T pull,
-   of own V[2n], q[3 own free]; F or b NULL: not wanted. Collective. */
+   of own V[2n], q[3 own free]; F or b NULL: not wanted. With a known push q is a way. Without, V and q are velocities:
+   alpha V and, for its sign, at.end q of the obstacles are the ways. Collective. */
 PETSC_EXTERN PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, const PetscScalar V[],
                                             const PetscScalar q[], PetscScalar F[], PetscScalar b[]);

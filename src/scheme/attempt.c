@@ -46,12 +46,22 @@ static PetscErrorCode Past(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where free bodies are without their q: the history of their places, and its way from where they have been placed. No
-   load yet. next.place is used for it. */
-static PetscErrorCode KnownLoads(Scheme s, Coupled *d, const BDF *b) {
+/* place = that of the state + SUM_j weight_j q_j, q_j the velocities of free bodies in the states. next.solid is used
+   for the sum. */
+static PetscErrorCode CarryBodies(Scheme s, Coupled *d, const PetscReal weight[], Vec place) {
+  PetscFunctionBeginUser;
+  PetscCall(HistorySum(d->adams.known, weight, 1, STATES(s, solid), d->next.solid));
+  PetscCall(VecCopy(s->state.place, place));
+  PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, d->next.solid, 1, place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where free bodies are without their new q, and the way there from where they have been placed. No load yet.
+   next.place is used for it. */
+static PetscErrorCode KnownLoads(Scheme s, Coupled *d) {
   const Obstacles o = s->coupling->bodies->obstacles;
   PetscFunctionBeginUser;
-  PetscCall(HistorySum(b->order, b->history, 1 / b->a0, STATES(s, place), d->next.place));
+  PetscCall(CarryBodies(s, d, d->adams.history, d->next.place));
   PetscCall(FreeBodiesShift(o, d->next.place, d->place, d->shift));
   PetscCall(PetscArrayzero(d->load, FreeBodiesOwn(o)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -67,7 +77,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(ForcingClear(f));
   PetscCall(Past(s, d, b));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  if (d->place) PetscCall(KnownLoads(s, d, b));
+  if (d->place) PetscCall(KnownLoads(s, d));
   PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->shift, d->force, d->load));
   for (PetscInt k = 0; d->place && k < FreeBodiesOwn(obstacles); k++)
     d->load[k] = obstacles->load[3 * obstacles->free->first + k] - d->load[k];
@@ -138,12 +148,12 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt; free bodies by the same formula. */
+/* P = u_inf(X*) + V,  X = Xhat + P/a0,  U = P + (labels' speed) dX/dt; free bodies by their Adams formula. */
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
   if (n->place) {
-    PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, a0, n->place));
+    PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, d->adams.end, n->place));
     PetscCall(FreeBodiesShift(s->coupling->bodies->obstacles, n->place, d->place, d->shift));
   }
   if (n->p)
@@ -293,8 +303,10 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   const BDF b = BDFCoefficients(d->order = Order(s, h), h->step);
   PetscCall(HistorySum(b.order, b.star, 1, h->X, d->Xstar));
   PetscCall(HistorySum(b.order, b.history, 1 / b.a0, h->X, d->Xhat));
-  if (d->place) PetscCall(HistorySum(b.order, b.star, 1, STATES(s, place), d->place));
-  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, (Instant){s->state.t + d->done + dt, d->place}));
+  d->adams = AdamsCoefficients(s->plan.order > 1 ? b.order : 0, h->step);
+  if (d->place) PetscCall(CarryBodies(s, d, d->adams.star, d->place));
+  const Instant end = {s->state.t + d->done + dt, d->place, d->adams.end};
+  PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, end));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal aim = d->start ? 0 : b.a0; /* at edges and areas: the first ones have them */
   if (s->membrane->viscosity > 0) {

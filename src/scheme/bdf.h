@@ -76,3 +76,33 @@ static inline BDF BDFCoefficients(PetscInt order, const PetscReal step[]) {
   }
   return b;
 }
+
+/* Adams formulas with variable steps, for what moves with a rate q that depends on its place: from the present y,
+
+       y* = y + SUM star_j q_j,     y_new = y + end q_new + SUM history_j q_j,
+
+   integrals over the step of the polynomials through the rates of the states, without and with the new one (time). */
+typedef struct {
+  PetscInt known;           /* states whose rates are used: 0 (y* = y, backward Euler) to BDF_MOST */
+  PetscReal star[BDF_MOST]; /* (time) */
+  PetscReal end;            /* (time) */
+  PetscReal history[BDF_MOST];
+} Adams;
+
+/* AdamsCoefficients - for steps as in BDFExtrapolation. The two points of Gauss are exact for a cubic. For equal steps
+   and two states y* = y + dt (3q - q_old)/2, y_new = y + dt (5q_new + 8q - q_old)/12. */
+static inline Adams AdamsCoefficients(PetscInt known, const PetscReal step[]) {
+  Adams a = {.known = known};
+  for (int point = -1; point <= 1; point += 2) {
+    const PetscReal at = 0.5 + point / PetscSqrtReal(12);
+    PetscReal past[BDF_STATES], all[BDF_STATES] = {(at - 1) * step[0]}, star[BDF_STATES];
+    for (PetscInt j = 0; j < known; j++) past[j] = all[j + 1] = step[j];
+    past[0] = at * step[0];
+    BDFExtrapolation(known, past, star);
+    for (PetscInt j = 0; j < known; j++) a.star[j] += step[0] / 2 * star[j];
+    BDFExtrapolation(known + 1, all, star);
+    a.end += step[0] / 2 * star[0];
+    for (PetscInt j = 0; j < known; j++) a.history[j] += step[0] / 2 * star[j + 1];
+  }
+  return a;
+}

@@ -20,6 +20,7 @@ typedef struct {
   PetscReal *made_with;    /* [vesicles] label speeds with which these blocks were made */
   StreamPast past;         /* the states before, where their flows act as a force */
   Vec Xstar, Xhat;         /* extrapolated markers, BDF history of the markers */
+  Adams adams;             /* weights of the velocities of free bodies in the step being made */
   Vec place;               /* of free bodies, extrapolated; NULL without */
   PetscReal *load, *shift; /* [3 own free] known force and torque on them; their way from there; NULL without */
   Vec moved;               /* known part of the markers' motion */
