@@ -50,8 +50,6 @@ static PetscErrorCode FreeBodiesCheckScene(Scene s) {
   const SceneRule rules[] = {
     {inertia != INERTIA_AUTO && inertia != INERTIA_NONE,
      "-obstacle_free {-obstacle_free}: not with -fluid_inertia {-fluid_inertia}; allowed: none"},
-    {s->scheme.wanted > 0,
-     "-obstacle_free {-obstacle_free}: not with -scheme_auto {-scheme_auto}, which was not measured for it; allowed: 0"},
     {FluidSpecIsFree(&s->fluid) && PetscMax(PetscAbsReal(sum[0]), PetscAbsReal(sum[1])) > 1e-9 * most,
      "-obstacle_force {-obstacle_force}: adds up to (%g, %g) with -domain_bc_x free, where bodies under a force have no finite velocity in two dimensions; allowed: forces that add up to 0", {sum[0], sum[1]}}};
   return REFUSE(s, rules);
