@@ -139,7 +139,9 @@ def test_an_inclusion(case, tmp_path):
 def test_an_inclusion_within_the_wanted_error(tmp_path):
     """-scheme_auto 0.001 with a disc in a vesicle."""
     exact = EXACT["inclusion"]["0.3, 1"]
-    options = "-scheme_auto .001 -domain_bc_x free -domain_bc_y free -flow_type shear -time_end 30 -vesicle_reduced_area .8"
+    options = (
+        "-scheme_auto .001 -domain_bc_x free -domain_bc_y free -flow_type shear -time_end 30 -vesicle_reduced_area .8"
+    )
     options += f" -vesicle_area 2.513274122871834 -vesicle_angle {180 * exact[0]} -vesicle_bending .1"
     series = run_petves(tmp_path, f"{options} -obstacle_shape posts -obstacle_free all -obstacle_radius .3").series
     found = [series["inclination"][-1] / np.pi, series["frequency"][-1], rates(series, 1)[2]]

@@ -22,7 +22,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 from harness import PETVES, mpirun, read_series
-from drawn_scenes import OF_SOLIDS, OF_VESICLES, Draw, Scene
+from drawn_scenes import OF_FREE, OF_SOLIDS, OF_VESICLES, Draw, Scene
 
 
 def units(table: str) -> dict:
@@ -116,7 +116,7 @@ class Change:
             kind, length, time = OPTIONS.get(name, ("scalar", 0, 0))
             value = self.turned(rate if name == "flow_rate" else kind, value)
             numbers[name] = value * (self.length**length * self.time**time) if length or time else value
-            order = self.vesicles if name in OF_VESICLES else self.solids if name in OF_SOLIDS else None
+            order = self.vesicles if name in OF_VESICLES else self.solids if name in OF_SOLIDS + OF_FREE else None
             numbers[name] = numbers[name] if order is None else numbers[name][order]
 
         def curves(which: list, order: list | None, reverse: bool) -> list:
@@ -203,7 +203,8 @@ def is_compared(scene: Scene, change: Change, stem: str, body: int) -> bool:
         return False
     if body == 0 and stem in ("inclination", "frequency") and change.vesicles:  # those of the first vesicle
         return False
-    if stem == "energy_gravity" and change.shift.any() and "membrane_permeability" in scene.numbers:
+    leaks = "membrane_permeability" in scene.numbers or scene.text.get("membrane_derivative") == "fd"
+    if stem == "energy_gravity" and change.shift.any() and leaks:
         return False  # a weight that changes has a height from somewhere
     if stem == "obstacle_torque" and scene.kind == "spanning" and change.mirrors:  # its markers begin elsewhere
         return False

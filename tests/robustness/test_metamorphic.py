@@ -39,9 +39,11 @@ def test_every_kind_is_drawn():
         draw = Draw(SEED, number)
         scene = draw.scene()
         if scene:
-            seen.update([scene.kind, *scene.text.values(), *scene.numbers, *scene.numbers["domain_bc"].tolist()])
+            seen.update(
+                [scene.kind, *scene.text, *scene.text.values(), *scene.numbers, *scene.numbers["domain_bc"].tolist()]
+            )
             seen.update(change.name for change in metamorphic.changes(scene, draw.random, RANKS))
-    kinds = "posts closed container open spanning coupled split penalty free periodic wall convective unsteady"
+    kinds = "posts obstacle_free closed container open spanning coupled split penalty free periodic wall convective unsteady"
     kinds += " shear poiseuille extension uniform flux error vesicle_viscosity_ratio fluid_gravity contact_adhesion"
     kinds += " hooke green neo_hookean helfrich circle membrane_viscosity membrane_memory membrane_permeability contact_potential"
     kinds += " shift mirror swap order time length both"
