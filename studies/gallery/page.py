@@ -10,10 +10,12 @@ from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
 from studies.gallery.capsule import SCENE as CAPSULE
 from studies.gallery.cells import SCENE as CELLS
+from studies.gallery.compound import SCENE as COMPOUND
 from studies.gallery.constriction import SCENE as CONSTRICTION
 from studies.gallery.couette import SCENE as COUETTE
 from studies.gallery.doublet import SCENE as DOUBLET
 from studies.gallery.hundred import SCENE as HUNDRED
+from studies.gallery.jeffery import SCENE as JEFFERY
 from studies.gallery.passing import SCENE as PASSING
 from studies.gallery.posts import SCENE as POSTS
 from studies.gallery.pressed import SCENE as PRESSED
@@ -43,6 +45,8 @@ SCENES = (
     CAPSULE,
     CELLS,
     DOUBLET,
+    COMPOUND,
+    JEFFERY,
 )
 TEMPLATE = Path(__file__).with_name("page.md")
 BLOCK = re.compile(r"^<!-- scene (\w+) -->\n", re.MULTILINE)
