@@ -62,7 +62,8 @@ static PetscBool HasSprings(const void *scene) {
 }
 
 static PetscBool IsAdaptable(const void *scene) {
-  return HasVesicles(scene) || ((Scene)scene)->time.adapt == ADAPT_NONE ? PETSC_TRUE : PETSC_FALSE;
+  const Scene s = (Scene)scene;
+  return HasVesicles(s) || s->obstacles.free.count || s->time.adapt == ADAPT_NONE ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The 0 that stands for no difference is right for all scenes. */
@@ -103,7 +104,7 @@ static const OptionNeed
   need_penalty = {"vesicles and -scheme_type penalty", .met = HasSprings},
   need_order = {"-scheme_order 2 or 3", AT(scheme.order), IS(2) | IS(3)},
   need_adapt = {"-time_adapt error", AT(time.adapt), IS(ADAPT_ERROR)},
-  need_adaptable = {"vesicles; without, steps are fixed", .met = IsAdaptable},
+  need_adaptable = {"vesicles or free bodies; without, steps are fixed", .met = IsAdaptable},
   need_convection = {"-fluid_inertia convective", AT(fluid.inertia), IS(INERTIA_CONVECTIVE)},
   need_grid = {"walls or periodic boundaries (-domain_bc_x)", AT(fluid.bc[0]), IS(BC_WALL) | IS(BC_PERIODIC)},
   need_gravity = {"a -fluid_gravity that is not 0,0", .met = HasWeight},

@@ -213,10 +213,14 @@ static PetscErrorCode LargestDifference(Scheme s, Vec x, Vec y, PetscReal *large
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* R0 of the smallest vesicle. */
-static PetscReal SmallestRadius(Membrane m) {
+/* R0 of the smallest vesicle or free body. */
+static PetscReal SmallestRadius(Scheme s) {
+  const Membrane m = s->membrane;
+  const Obstacles o = s->coupling->bodies->obstacles;
   PetscReal R0 = PETSC_MAX_REAL;
   for (PetscInt v = 0; v < m->layout->bodies; v++) R0 = PetscMin(R0, m->L0[v] / (2 * PETSC_PI));
+  for (PetscInt b = 0; o && b < o->layout->bodies; b++)
+    if (o->motion[b].free) R0 = PetscMin(R0, ObstacleRadius(o, b));
   return R0;
 }
 
@@ -231,7 +235,7 @@ PetscErrorCode CoupledEstimate(Scheme s, PetscReal *error) {
                                                   (Instant){.place = d->next.place}));
   if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
-  *error = found[1] > 0 ? NAN : found[0] / SmallestRadius(s->membrane);
+  *error = found[1] > 0 ? NAN : found[0] / SmallestRadius(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -324,6 +328,8 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   PetscCall(Solve(s, d));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MoveMarkers(s, d, b.a0));
+  if (d->place) PetscCall(SchemeCheckBodies(s, (Instant){.t = end.t, .place = d->next.place}));
+  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MeasureStress(s, d));
   if (d->place) PetscCall(FreeBodiesTurn(s->coupling->bodies->obstacles, d->next.place, d->next.solid));
   PetscCall(ChooseNext(s, d));
@@ -340,7 +346,7 @@ static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &began));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &began, 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   PetscCall(CoupledEstimate(s, &error));
-  *overshot = error > FAR * began / SmallestRadius(s->membrane) && error > STILL ? PETSC_TRUE : PETSC_FALSE;
+  *overshot = error > FAR * began / SmallestRadius(s) && error > STILL ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

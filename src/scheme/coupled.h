@@ -42,7 +42,7 @@ static inline StateFields CoupledMakes(const Coupled *d) {
 /* CoupledAttempt - solve one step of size dt from the state into next, or say in report.failure why it cannot be.
    CoupledFixedAttempt - of a fixed step: a step whose motion stops within it is made again by backward Euler, from the
    state itself in place of an extrapolation. CoupledEstimate - error estimate of the step in next: max |X - X*|/R0, R0
-   of the smallest vesicle; not a number where an X is. Collective. */
+   of the smallest vesicle or free body; not a number where an X is. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode CoupledEstimate(Scheme scheme, PetscReal *error);

@@ -68,7 +68,7 @@ PetscErrorCode SchemeCreate(Scene scene, Coupling coupling, const PetscReal X[],
   s->coupling = coupling;
   s->fluid = coupling->fluid;
   s->membrane = coupling->membrane;
-  s->policy = StepPolicyCreate(scene, s->membrane->layout->bodies);
+  s->policy = StepPolicyCreate(scene, s->membrane->layout->bodies + scene->obstacles.free.count);
   s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(scene->scheme.order, 2), .guess = 2};
   PetscCall(CreateState(s, X));
   PetscCall(create(s));

@@ -234,18 +234,6 @@ static PetscErrorCode CheckContact(Scheme s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That free bodies have run into nothing that is solid. */
-static PetscErrorCode CheckFreeBodies(Scheme s) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  PetscFunctionBeginUser;
-  if (!s->state.place) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstaclesCheck(o, s->scene, StateInstant(&s->state), s->report.failure));
-  if (*s->report.failure)
-    PetscCall(SchemeAdvise(s, "a smaller -time_step, -contact_repulsion, or a -time_end before that"));
-  PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Without scaled stencils the box part of the near field is right in corners too. */
 PetscErrorCode SchemeCheck(Scheme s) {
   const Grid g = s->fluid->grid;
@@ -254,7 +242,6 @@ PetscErrorCode SchemeCheck(Scheme s) {
   char *failure = s->report.failure;
   PetscFunctionBeginUser;
   PetscCall(CheckFinite(s));
-  if (!*failure) PetscCall(CheckFreeBodies(s));
   if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkersCheck(s->coupling->markers, s->membrane->layout, s->state.X, failure));
   if (*failure)

@@ -94,8 +94,7 @@ PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That moving bodies run into nothing that is solid, nor step over it. */
-static PetscErrorCode CheckBodies(Scheme s, Instant at) {
+PetscErrorCode SchemeCheckBodies(Scheme s, Instant at) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const char *advice = s->state.place ? "a smaller -time_step, -contact_repulsion, or a -time_end before that"
                                       : "a -time_end before that, or other velocities";
@@ -127,7 +126,7 @@ static PetscErrorCode AddOsmotic(Scheme s, Vec X) {
 PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], Instant at) {
   const char *failure = s->report.failure;
   PetscFunctionBeginUser;
-  PetscCall(CheckBodies(s, at));
+  PetscCall(SchemeCheckBodies(s, at));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingPlace(s->coupling, a0, at, X, treading, s->report.failure));
   if (*failure)

@@ -116,6 +116,10 @@ PETSC_EXTERN void SchemeImplement(Scheme scheme, const SchemeOps *ops, void *dat
 PETSC_EXTERN PetscErrorCode SchemeAddSolver(Scheme scheme, KSP ksp, PC inner);
 PETSC_EXTERN void SchemeIterations(Scheme scheme, PetscInt tension, PetscInt bending);
 
+/* SchemeCheckBodies - report.failure says so when bodies at that instant, after a step, have run into what is solid or
+   stepped over it. Collective. */
+PETSC_EXTERN PetscErrorCode SchemeCheckBodies(Scheme scheme, Instant at);
+
 /* SchemePlace - put everything that a solve stands on at the markers X, with label speeds treading[vesicles] or NULL
    (CouplingPlace), and the background of that instant there: background = u_inf(X), g minus the law's rows of the
    background. report.failure says so when a marker is too close to a wall or the flow has no value. Collective. */

@@ -12,8 +12,8 @@
 #define EQUAL 10 /* steps to a time to end at that are made equal */
 #define STRETCH 1.1 /* of them, at most: SAFETY leaves that much */
 
-StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles) {
-  return (StepPolicy){.adaptive = scene->time.adapt == ADAPT_ERROR && vesicles ? PETSC_TRUE : PETSC_FALSE,
+StepPolicy StepPolicyCreate(Scene scene, PetscInt bodies) {
+  return (StepPolicy){.adaptive = scene->time.adapt == ADAPT_ERROR && bodies ? PETSC_TRUE : PETSC_FALSE,
                       .base = scene->time.dt,
                       .tolerance = scene->time.adapt_tol,
                       .max_move = scene->time.adapt_max_move * FluidSpecCellSize(&scene->fluid),

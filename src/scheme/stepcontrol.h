@@ -33,9 +33,10 @@ typedef struct {
 
 typedef enum { STEP_ACCEPT, STEP_REPEAT, STEP_GIVE_UP } StepVerdict;
 
-/* StepPolicyCreate - the policy of a scene. Without vesicles steps are fixed, as the error estimate is theirs. Not
+/* StepPolicyCreate - the policy of a scene with so many vesicles and free bodies. Without, steps are fixed: the error
+   estimate is theirs. Not
    collective. */
-PETSC_EXTERN StepPolicy StepPolicyCreate(Scene scene, PetscInt vesicles);
+PETSC_EXTERN StepPolicy StepPolicyCreate(Scene scene, PetscInt bodies);
 
 /* StepFirstLevel - the level of an adaptive run's first step. */
 PETSC_EXTERN PetscInt StepFirstLevel(void);

@@ -82,6 +82,25 @@ def test_jeffery_s_orbit(order, within, tmp_path):
     assert off[0] < within and off[1] < off[0] / 2 ** (order - 0.2)
 
 
+@pytest.mark.parametrize("tolerance, steps", [(1e-3, 90), (1e-5, 230)])
+def test_jeffery_s_orbit_in_adaptive_steps(tolerance, steps, tmp_path):
+    options = f"{FREE} {ellipses(tmp_path, (0, 0, 2, 1))} -flow_type shear -time_end {5 * np.pi!r} -output_every 99"
+    options += f" -time_step .05 -time_adapt error -time_adapt_tol {tolerance} -coupled_ksp_rtol 1e-9"
+    series = run_petves(tmp_path, options).series
+    assert abs(series["obstacle_angle_1"][-1] + 2 * np.pi) < tolerance and len(series["time"]) < steps
+
+
+def test_bodies_that_meet_take_smaller_steps(tmp_path):
+    """Two discs that are pressed together: the film between them drains, steps become short, and one line ends the run."""
+    options = "-domain_bc_x periodic -domain_bc_y periodic -domain_box -4,4,-4,4 -domain_cells 64,64 -obstacle_radius 1"
+    options += " -obstacle_center -1.5,0,1.5,0 -obstacle_force 20,0,-20,0 -time_step .5 -time_adapt error -time_end 10"
+    run = run_petves(tmp_path, f"{ALONE} {options}", good=False)
+    assert run.status == 2 and "obstacles 1 and 2 run into one another" in run.errors[-1]
+    assert (
+        run.series["dt"][-1] < 1e-9 and abs(run.series["obstacle_center_x_1"][-1]) > 1.018
+    )  # by less than 0.037 apart their forces are not right
+
+
 def test_discs_that_pass(tmp_path):
     """In shear, of third order in time; both end as far from the middle."""
     options = f"{FREE} -flow_type shear -obstacle_radius 1 -obstacle_center -2,.5,2,-.5 -time_step .0125 -time_end 8"
