@@ -118,8 +118,8 @@ typedef struct {
 static void ObstaclePlaceInLattice(Scene scene, PetscInt k, PetscReal center[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscReal *b = scene->fluid.box;
-  const PetscInt columns = own->lattice.v[0], rows = own->lattice.v[1];
-  const PetscReal at = k % columns + 0.5 + k / columns * own->shift;
+  const PetscInt columns = own->posts.lattice.v[0], rows = own->posts.lattice.v[1];
+  const PetscReal at = k % columns + 0.5 + k / columns * own->posts.shift;
   center[0] = b[0] + (b[1] - b[0]) / columns * (at - columns * PetscFloorReal(at / columns));
   center[1] = b[2] + (b[3] - b[2]) / rows * (k / columns + 0.5);
 }
@@ -127,7 +127,8 @@ static void ObstaclePlaceInLattice(Scene scene, PetscInt k, PetscReal center[2])
 /* Make circles, with the velocity and rotation that the options give each of them. */
 static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
-  const PetscBool lattice = own->lattice.n == 2 && own->lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal *packed = own->shape == OBSTACLE_POSTS ? own->posts.packed : NULL;
+  const PetscBool lattice = own->posts.lattice.n == 2 && own->posts.lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
   o->count = count;
   PetscCall(PetscCalloc1(count, &o->of));
@@ -139,7 +140,7 @@ static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines
     if (lattice) ObstaclePlaceInLattice(scene, k, one->center);
     for (int c = 0; c < 2; c++) {
       one->curve.axes[c] = ListEntry(&own->radius, 1, k, 0);
-      if (!lattice) one->center[c] = ListEntry(&own->center, 2, k, c);
+      if (!lattice) one->center[c] = packed ? packed[2 * k + c] : ListEntry(&own->center, 2, k, c);
       one->note.velocity[c] = ListEntry(&own->move, 2, k, c);
     }
     one->note.rotation = ListEntry(&own->rotation, 1, k, 0);
@@ -150,15 +151,16 @@ static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines
 /* clang-format off */
 static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
-  const PetscInt columns = own->lattice.v[0], rows = own->lattice.n == 2 ? own->lattice.v[1] : -1, count = columns * rows;
-  const PetscReal turns = own->shift * rows;
+  const PetscInt columns = own->posts.lattice.v[0], rows = own->posts.lattice.n == 2 ? own->posts.lattice.v[1] : -1;
+  const PetscInt count = own->posts.count ? own->posts.count : columns * rows;
+  const PetscReal turns = own->posts.shift * rows;
   const SceneRule rules[] = {
     {rows < 0 || (columns > 0) != (rows > 0),
      "-obstacle_lattice {-obstacle_lattice}: no lattice; allowed: columns,rows, both above 0, or 0,0 for none"},
     {scene->fluid.bc[1] == BC_PERIODIC && PetscAbsReal(turns - PetscFloorReal(turns + 0.5)) >= 1e-9,
      "-obstacle_shift {-obstacle_shift}: %.0f rows are shifted by %g columns, so that the lattice breaks where the box repeats; allowed: rows times shift a whole number", {rows, turns}},
-    {count && SceneGiven(scene, "-obstacle_center"),
-     "-obstacle_center: given together with -obstacle_lattice; allowed: one of them"},
+    {own->posts.count && columns,
+     "-obstacle_count {-obstacle_count}: given together with -obstacle_lattice; allowed: one of them"},
     {!count && own->center.n % 2,
      "-obstacle_center {-obstacle_center}: not pairs; allowed: x,y of each post"}};
   PetscFunctionBeginUser;
@@ -318,6 +320,7 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
 PetscErrorCode SceneDropObstacles(Draft scene) {
   SceneObstacles *own = &scene->obstacles;
   PetscFunctionBeginUser;
+  PetscCall(PetscFree(own->posts.packed));
   if (!own->outline.vesicles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShapeDestroy(&own->outline));
   PetscCall(PetscFree2(own->holder, own->vesicle));

@@ -76,6 +76,14 @@ typedef struct {
   PetscInt count;
 } SceneFreeBodies;
 
+/* Places of circles that have no -obstacle_center. */
+typedef struct {
+  IntList lattice;   /* columns and rows; 0, 0: none */
+  PetscReal shift;   /* of a row against the one below, over the distance of columns */
+  PetscInt count;    /* of circles that are packed into the box; 0: none */
+  PetscReal *packed; /* [2 count] their centers, once the vesicles have been placed */
+} ScenePosts;
+
 /* Solid bodies in the fluid. */
 typedef struct {
   PetscInt shape; /* ObstacleShape */
@@ -83,8 +91,7 @@ typedef struct {
   PetscReal frequency; /* angular, of the surfaces' velocities (1/time); 0: steady */
   PetscBool moving;    /* closed curves go with their velocities */
   SceneFreeBodies free;
-  IntList lattice;               /* columns and rows; 0, 0: none */
-  PetscReal shift;               /* of a row against the one below, over the distance of columns */
+  ScenePosts posts;
   PetscReal throat, length;      /* of a constriction: narrowest width over the channel's; along x, 0: the width */
   char file[PETSC_MAX_PATH_LEN]; /* curve file */
   PetscReal spacing;             /* ds/h */

@@ -51,6 +51,12 @@ static PetscBool HasPotential(const void *scene) {
   return ((Scene)scene)->potential.strength > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool HasSolidCenters(const void *scene) {
+  const SceneObstacles *own = &((Scene)scene)->obstacles;
+  const PetscBool placed = own->posts.count || (own->posts.lattice.n && own->posts.lattice.v[0]);
+  return own->shape == OBSTACLE_POSTS ? !placed : own->shape == OBSTACLE_COUETTE || own->shape == OBSTACLE_CONSTRICTION;
+}
+
 static PetscBool HasHeavy(const void *scene) {
   return HasFreeBodies(scene) || IsCoupled(scene) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -114,7 +120,7 @@ static const OptionNeed
   need_circles = {"-obstacle_shape posts or couette", AT(obstacles.shape), IS(OBSTACLE_POSTS) | IS(OBSTACLE_COUETTE)},
   need_posts = {"-obstacle_shape posts", AT(obstacles.shape), IS(OBSTACLE_POSTS)},
   need_constriction = {"-obstacle_shape constriction", AT(obstacles.shape), IS(OBSTACLE_CONSTRICTION)},
-  need_solid_centers = {"-obstacle_shape posts, couette or constriction", AT(obstacles.shape), ~(IS(OBSTACLE_NONE) | IS(OBSTACLE_FILE))},
+  need_solid_centers = {"posts that are in no lattice and not packed, couette or constriction (-obstacle_shape)", .met = HasSolidCenters},
   need_free = {"-obstacle_free", .met = HasFreeBodies},
   need_heavy = {"vesicles and -scheme_type coupled, or -obstacle_free", .met = HasHeavy},
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
@@ -167,8 +173,9 @@ static const OptionRow table[] = {
   {"-obstacle_shape", OPT_ENUM, AT(obstacles.shape), "none", "none|posts|couette|constriction|file", "solid bodies in the fluid: circles, two circles with fluid between them, two bumps on the walls y_min and y_max that face one another, curves of a file"},
   {"-obstacle_radius", OPT_REALS, AT(obstacles.radius), "0.2", ">0", "of posts: one for all or one each; of couette: the inner and the outer one (length)", &need_circles},
   {"-obstacle_center", OPT_REALS, AT(obstacles.center), "0,0", "any", "x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)", &need_solid_centers},
-  {"-obstacle_lattice", OPT_INTS, AT(obstacles.lattice), "0,0", ">=0", "posts: columns and rows that fill the box, in place of -obstacle_center; 0,0: none", &need_posts},
-  {"-obstacle_shift", OPT_REAL, AT(obstacles.shift), "0", "any", "lattice of posts: how far a row stands along x from the one below it, over the distance of columns", &need_posts},
+  {"-obstacle_count", OPT_INT, AT(obstacles.posts.count), "0", ">=0", "posts that are packed at random into the box, together with vesicles that are (-vesicle_packing, its seed and gap), in place of -obstacle_center; 0: none", &need_posts},
+  {"-obstacle_lattice", OPT_INTS, AT(obstacles.posts.lattice), "0,0", ">=0", "posts: columns and rows that fill the box, in place of -obstacle_center; 0,0: none", &need_posts},
+  {"-obstacle_shift", OPT_REAL, AT(obstacles.posts.shift), "0", "any", "lattice of posts: how far a row stands along x from the one below it, over the distance of columns", &need_posts},
   {"-obstacle_throat", OPT_REAL, AT(obstacles.throat), "0.5", "(0,1)", "constriction: its narrowest width over that of the channel", &need_constriction},
   {"-obstacle_length", OPT_REAL, AT(obstacles.length), "0", ">=0", "constriction: its length along x, a whole wave of a cosine; 0: as long as the channel is wide (length)", &need_constriction},
   {"-obstacle_velocity", OPT_REALS, AT(obstacles.move), "0,0", "any", "u_x,u_y of the fluid at the obstacles' surfaces, one for all or one each; the curves stay where they are without -obstacle_moving (length/time)", &need_circles},
@@ -344,6 +351,7 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
                                              {"-vesicle_semi_axes", "-vesicle_reduced_area"},
                                              {"-vesicle_markers", "-vesicle_spacing"},
                                              {"-obstacle_center", "-obstacle_lattice"},
+                                             {"-obstacle_center", "-obstacle_count"},
                                              {NULL, NULL}};
 
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {

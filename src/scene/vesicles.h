@@ -32,9 +32,9 @@ PETSC_EXTERN PetscErrorCode KindsCreate(Draft scene, Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindsDestroy(Kinds *kinds);
 PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
 
-/* ScenePlace (packed.c) - pose[vesicles] by -vesicle_center and -vesicle_angle, or packed. Collective; stops with the
-   user's message when there is no room. */
-PETSC_EXTERN PetscErrorCode ScenePlace(Scene scene, const Kinds *kinds, Pose pose[]);
+/* ScenePlace (packed.c) - pose[vesicles] by -vesicle_center and -vesicle_angle, or packed, together with the posts that
+   are packed. Collective; stops with the user's message when there is no room. */
+PETSC_EXTERN PetscErrorCode ScenePlace(Draft scene, const Kinds *kinds, Pose pose[]);
 
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
    bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
