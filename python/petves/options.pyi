@@ -53,6 +53,7 @@ class Options(TypedDict, total=False):
     obstacle_shape: Literal['none', 'posts', 'couette', 'constriction', 'file'] | None  # solid bodies in the fluid: circles, two circles with fluid between them, two bumps on the walls y_min and y_max that face one another, curves of a file
     obstacle_radius: Value  # of posts: one for all or one each; of couette: the inner and the outer one (length)
     obstacle_center: Value  # x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)
+    obstacle_count: Value  # posts that are packed at random into the box, together with vesicles that are (-vesicle_packing, its seed and gap), in place of -obstacle_center; 0: none
     obstacle_lattice: Value  # posts: columns and rows that fill the box, in place of -obstacle_center; 0,0: none
     obstacle_shift: Value  # lattice of posts: how far a row stands along x from the one below it, over the distance of columns
     obstacle_throat: Value  # constriction: its narrowest width over that of the channel

@@ -29,6 +29,8 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
   if (c->mobility->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
+    if (c->bodies->obstacles && c->bodies->obstacles->free->M)
+      PetscCall(CrossingCreate(&scene->fluid, c->mobility, &p->crossing));
   } else if (CouplingHasMembrane(c)) {
     PetscCall(MeanMobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
@@ -41,6 +43,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   Preconditioner p = *preconditioner;
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CrossingDestroy(&p->crossing));
   PetscCall(SharedShapesDestroy(&p->shapes));
   PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
@@ -113,6 +116,7 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   p->failed = PETSC_FALSE;
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
   if (p->shapes && !p->failed) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
+  if (p->crossing && !p->failed) PetscCall(CrossingPlace(p->crossing));
   if (!p->blocks || p->failed) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
   if (AreBlocksOver(p)) PetscCall(MakeBlocks(p));
@@ -139,6 +143,29 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Block Gauss-Seidel between the obstacles and the vesicles, of which z has the residuals: the obstacles, the vesicles
+   beside them, and the obstacles again beside these. */
+static PetscErrorCode SolveAcross(Preconditioner p, PetscScalar V[], PetscScalar sigma[]) {
+  const Unknowns u = p->unknowns;
+  const Bodies b = u->coupling->bodies;
+  const PetscInt n = u->velocity, w = BodiesObstacleNumbers(b), all = w + FreeBodiesOwn(b->obstacles);
+  PetscScalar *F, *r;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n + w, &F, n + all, &r));
+  PetscCall(PetscArraycpy(r + n, V + n, all));
+  PetscCall(ObstacleBlockBegin(p->solid, V + n, V));
+  PetscCall(ObstacleBlockEnd(p->solid, NULL, V + n));
+  PetscCall(PetscArraycpy(F + n, V + n, w));
+  PetscCall(CrossingApply(p->crossing, 0, b->vesicles, F, V));
+  PetscCall(SharedShapesSolve(p->shapes, V, sigma));
+  PetscCall(UnknownsForce(u, V, F));
+  PetscCall(PetscArrayzero(F + n, w));
+  PetscCall(CrossingApply(p->crossing, b->vesicles, b->layout->bodies, F, r));
+  PetscCall(PetscArraycpy(V + n, r + n, all));
+  PetscCall(PetscFree2(F, r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   const Unknowns u = p->unknowns;
   PetscScalar *V, *sigma;
@@ -149,8 +176,9 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(VecGetArray(z, &V));
   sigma = V + UnknownsEdges(u);
   UnknownsScale(u, PETSC_TRUE, V);
+  if (p->crossing) PetscCall(SolveAcross(p, V, sigma));
   if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
-  if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
+  if (p->shapes && !p->crossing) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
   if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
   if (p->solid && ObstacleBlockCoupled(p->solid)) PetscCall(UnknownsForce(u, V, p->force));
   if (p->solid) PetscCall(ObstacleBlockEnd(p->solid, p->force, V + u->velocity));

@@ -2,6 +2,7 @@
    vesicles share one dense block; many vesicles have blocks of shared shapes with a coarse grid; obstacles have a block
    of their own. It also decides how long a dense block serves before it is made again. */
 #pragma once
+#include "precondition/crossing.h"
 #include "precondition/denseblocks.h"
 #include "precondition/obstacleblock.h"
 #include "precondition/sharedshapes.h"
@@ -22,6 +23,7 @@ struct _p_Preconditioner {
   DenseBlocks blocks;    /* few vesicles */
   SharedShapes shapes;   /* many vesicles */
   ObstacleBlock solid;   /* NULL without obstacles */
+  Crossing crossing;     /* NULL unless bodies move freely among many vesicles */
   PetscReal step_ratio;  /* largest ratio of two steps that share dense blocks */
   Age age;               /* of the dense blocks; without any, of the solves */
   PetscReal *treading;   /* [vesicles] the label speeds for which the blocks were made */

@@ -167,6 +167,23 @@ def test_an_inclusion_within_the_wanted_error(tmp_path):
     assert found == pytest.approx(exact, rel=1e-3)
 
 
+def test_a_packing_of_discs_and_vesicles(tmp_path):
+    """At random, none touches another; resolved.opts packs it again; the preconditioner knows both; so do three ranks."""
+    options = "-domain_box 0,4,0,4 -domain_cells 48,48 -domain_bc_x periodic -flow_type shear -vesicle_packing .2"
+    options += " -vesicle_area .4 -vesicle_reduced_area .8 -vesicle_bending .01 -obstacle_shape posts -obstacle_count 8"
+    options += " -obstacle_radius .3568 -obstacle_free all -time_step .02 -coupled_ksp_rtol 1e-8"
+    names = ("gap", "center_x", "inclination", "obstacle_center_x_1", "obstacle_rotation_8")
+    series = agree(tmp_path, options, 0.06, 0.1, names, (3,), rel=1e-6)["whole"].series
+    assert series["gap"].min() > 0.05 and series["coupled_its"][2:].max() <= 12
+    centers = np.array([[series[f"obstacle_center_{d}_{k}"][0] for d in "xy"] for k in range(1, 9)])
+    apart = centers[:, None] - centers[None]
+    apart[..., 0] -= 4 * np.round(apart[..., 0] / 4)
+    assert np.hypot(*apart.T)[~np.eye(8, dtype=bool)].min() > 2 * 0.3568
+    balanced(series, 8)
+    again = run_petves(tmp_path / "again", f"-options_file {tmp_path / 'whole' / 'resolved.opts'} -time_end .02").series
+    assert again["obstacle_center_x_1"][0] == series["obstacle_center_x_1"][0]
+
+
 def test_contact_with_a_vesicle_is_equal_and_opposite(tmp_path):
     """A disc that is pulled into a vesicle: what it bears less than its load, the vesicle bears; the same on 3 ranks."""
     options = f"{PERIODIC} -domain_box -1,1,-1,1 -domain_cells 48,48 -vesicle_center .2,.05 -vesicle_area .2"
