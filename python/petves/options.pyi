@@ -63,7 +63,7 @@ class Options(TypedDict, total=False):
     obstacle_frequency: Value  # the surfaces' velocities are those given times the cosine of this times the time: they swing (1/time)
     obstacle_moving: Literal['true', 'false'] | None  # closed obstacles move and turn as solid bodies with the velocities given (of a file: its lines # velocity and # rotation); false: they rest, and only their surfaces move
     obstacle_free: Value  # numbers of the closed obstacles, from 1 on, with commas between, that move and turn as the fluid carries them, or all
-    obstacle_density: Value  # density of free obstacles over that of the fluid, for their weight under -fluid_gravity; one for all or one an obstacle
+    obstacle_density: Value  # density of free obstacles over that of the fluid, for their weight under -fluid_gravity and their inertia; one for all or one an obstacle
     obstacle_force: Value  # f_x,f_y from outside on free obstacles, over the fluid's density and a unit of depth; a pair for all or one an obstacle (length^3/time^2)
     obstacle_torque: Value  # torque from outside on free obstacles about their centroids, counter-clockwise; one for all or one an obstacle (length^4/time^2)
     obstacle_file: Value  # curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own

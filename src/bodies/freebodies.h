@@ -3,9 +3,10 @@
 
        u_inf(Y) + E u - C F - beta N N^T F - m R q = 0,      R^T F + load = 0,
 
-   m the viscosity around the body over nu, load the force and the torque on it from outside. A body has no mass. Its
-   place, center and angle, is integrated by an Adams formula (scheme/bdf.h) with q for the rate, and its markers follow
-   from it, so its shape never changes.
+   m the viscosity around the body over nu, load the force and the torque on it from outside. Without inertia a body has
+   no mass; innerfluid.h has what fluid with inertia adds to the last row. The place of a body, center and angle, is
+   integrated by an Adams formula (scheme/bdf.h) with q for the rate, and its markers follow from it, so its shape never
+   changes.
 
    Unknowns and residuals of obstacles, and the force of a state, are arrays [2w + 3 own free]: q stands behind F, R^T F
    + load behind the rows of the markers. A place is a vector that every rank has, [3 free]. */

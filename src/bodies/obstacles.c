@@ -67,7 +67,7 @@ static PetscErrorCode ObstaclesFree(Obstacles o, Scene scene) {
   PetscInt *start, *body, count = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(own->count + 1, &start, l->size + 1, &body));
-  PetscCall(PetscMalloc1(3 * own->count, &o->load));
+  PetscCall(PetscMalloc2(3 * own->count, &o->load, own->count, &o->density));
   for (PetscInt k = 0; k <= own->count; k++) start[k] = k;
   for (PetscMPIInt r = 0; r <= l->size; r++) body[r] = 0;
   for (PetscInt b = 0; b < l->bodies; b++) {
@@ -75,9 +75,9 @@ static PetscErrorCode ObstaclesFree(Obstacles o, Scene scene) {
     BodyMotion *m = &o->motion[b];
     PetscReal *load = o->load + 3 * count, area;
     PetscCall(ObstacleCentroid(o, b, m->center, &area));
+    o->density[count] = ListEntry(&own->density, 1, b, 0);
     for (int c = 0; c < 2; c++)
-      load[c] = ListEntry(&own->force, 2, b, c) +
-                (ListEntry(&own->density, 1, b, 0) - 1) * area * scene->gravity.g.v[c];
+      load[c] = ListEntry(&own->force, 2, b, c) + (o->density[count] - 1) * area * scene->gravity.g.v[c];
     load[2] = ListEntry(&own->torque, 1, b, 0);
     m->free = ++count;
     m->carried = o->moving = PETSC_TRUE;
@@ -146,7 +146,7 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   PetscCall(PetscFree3(o->kind, o->vesicle, o->ratio));
   PetscCall(VecDestroy(&o->at.place));
   PetscCall(LayoutDestroy(&o->free));
-  PetscCall(PetscFree(o->load));
+  PetscCall(PetscFree2(o->load, o->density));
   PetscCall(LayoutDestroy(&o->layout));
   PetscCall(PetscFree(*obstacles));
   PetscFunctionReturn(PETSC_SUCCESS);

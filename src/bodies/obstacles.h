@@ -23,6 +23,7 @@ struct _p_Obstacles {
   BodyMotion *motion;   /* [curves] */
   Layout free;          /* bodies that move freely, as one marker each (freebodies.h) */
   PetscReal *load;      /* [3 free] force and torque on each of them from outside */
+  PetscReal *density;   /* [free] of each of them over that of the fluid */
   PetscBool moving;     /* whether a curve moves */
   PetscReal *N;         /* [2W] unit vector of each curve's normals, dX/dk turned outwards, where placed */
   PetscReal *ds;        /* [curves] mean edge */

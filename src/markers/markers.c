@@ -65,10 +65,15 @@ static void WindowClip(PetscBool wall, PetscInt n, PetscInt first, PetscInt own,
   window[1] = seam ? own : PetscMax(PetscMin(high - first, own), window[0]);
 }
 
+/* Markers and points. */
+static PetscInt MarkersCount(Markers m) {
+  return m->layout->M + m->points;
+}
+
 static void MarkersSetWindow(Markers m) {
   const Grid g = m->grid;
   PetscInt low[2] = {PETSC_MAX_INT / 2, PETSC_MAX_INT / 2}, high[2] = {-1, -1};
-  for (PetscInt k = 0; k < 2 * m->layout->M; k++)
+  for (PetscInt k = 0; k < 2 * MarkersCount(m); k++)
     for (int d = 0; d < 2; d++) {
       low[d] = PetscMin(low[d], m->stencil[k].first[d]);
       high[d] = PetscMax(high[d], m->stencil[k].first[d] + m->stencil[k].n[d]);
@@ -95,10 +100,12 @@ static void MarkerFoldStencil(Markers m, int comp, const PetscReal X[2], Stencil
 
 PetscErrorCode MarkersPlace(Markers m, Vec X) {
   const Grid g = m->grid;
+  const PetscInt n = MarkersCount(m);
   PetscFunctionBeginUser;
   PetscCall(LayoutGatherVec(m->layout, X, m->X));
+  PetscCall(PetscArraycpy(m->X + 2 * m->layout->M, m->point, 2 * m->points));
   if (g->free) PetscFunctionReturn(PETSC_SUCCESS); /* without stencils the window is empty and E = 0 */
-  for (PetscInt k = 0; k < m->layout->M; k++)
+  for (PetscInt k = 0; k < n; k++)
     for (int comp = 0; comp < 2; comp++)
       for (int dir = 0; dir < 2; dir++) {
         Stencil *s = &m->plain[2 * k + comp];
@@ -110,13 +117,13 @@ PetscErrorCode MarkersPlace(Markers m, Vec X) {
           s->first[dir] = ((s->first[dir] % g->n[dir]) + g->n[dir]) % g->n[dir];
       }
   if (m->folded) {
-    PetscCall(PetscArraycpy(m->stencil, m->plain, 2 * m->layout->M));
-    for (PetscInt k = 0; k < 2 * m->layout->M; k++) MarkerFoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
+    PetscCall(PetscArraycpy(m->stencil, m->plain, 2 * n));
+    for (PetscInt k = 0; k < 2 * n; k++) MarkerFoldStencil(m, k % 2, m->X + k - k % 2, &m->stencil[k]);
   }
-  for (PetscInt k = 0; k < 2 * m->layout->M; k++) /* weights are padded to whole vectors */
+  for (PetscInt k = 0; k < 2 * n; k++) /* weights are padded to whole vectors */
     for (PetscInt a = m->stencil[k].n[0]; a < STENCIL_POINTS; a++) m->stencil[k].weight[0][a] = 0;
   MarkersSetWindow(m);
-  PetscCall(StencilRowsPlace(m->rows, m->layout->M, m->stencil));
+  PetscCall(StencilRowsPlace(m->rows, n, m->stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,14 +163,16 @@ PetscErrorCode MarkersInterpolate(Markers m, Vec w, Vec U) {
   }
   PetscCall(PetscLogEventBegin(m->interpolate, 0, 0, 0, 0));
   PetscCall(VecGetArrayRead(w, &wa));
-  PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
+  PetscCall(PetscArrayzero(m->part, 2 * MarkersCount(m)));
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = m->window.rows[0]; j < PetscMin(m->window.rows[1], m->grid->rows[f]); j++)
       StencilRowInterpolate(m->rows, (Field)f, j, wa + GridRowStart(m->grid, (Field)f, j), m->part);
   PetscCall(VecRestoreArrayRead(w, &wa));
-  PetscCall(VecGetArray(U, &own));
-  PetscCall(LayoutSum(m->layout, 2, m->part, own));
-  PetscCall(VecRestoreArray(U, &own));
+  if (U) {
+    PetscCall(VecGetArray(U, &own));
+    PetscCall(LayoutSum(m->layout, 2, m->part, own));
+    PetscCall(VecRestoreArray(U, &own));
+  }
   PetscCall(PetscLogEventEnd(m->interpolate, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -194,7 +203,8 @@ static PetscErrorCode MultTranspose_E(Mat E, Vec F, Vec w) {
 
 static const StencilForm marker_form = {.stencils = 2, .parts = 2, .of = {{FIELD_U, 0}, {FIELD_V, 1}}};
 
-PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool folded, Markers *out) {
+PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool folded, PetscInt points,
+                             const PetscReal point[], Markers *out) {
   Markers m;
   const PetscInt slab = GridLocalU(g) + g->columns[FIELD_V] * g->rows[FIELD_V];
   PetscFunctionBeginUser;
@@ -204,14 +214,17 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->layout = l;
   m->kernel = KernelFind(kernel);
   PetscCheck(m->kernel, g->comm, PETSC_ERR_USER_INPUT, "-delta_type %s: unknown kernel", kernel);
-  PetscCall(PetscMalloc4(2 * l->M, &m->X, 2 * l->M, &m->plain, 2 * l->M, &m->force, 2 * l->M, &m->part));
+  m->points = points;
+  m->point = point;
+  const PetscInt n = 2 * MarkersCount(m);
+  PetscCall(PetscCalloc4(n, &m->X, n, &m->plain, n, &m->force, n, &m->part));
   m->folded = m->scaled = folded && (g->wall[0] || g->wall[1]);
   m->least =
       folded ? KERNEL_FOLDED_CELLS
              : KERNEL_WALL_CELLS; /* within the kernels' reach the mobility with the near field may not be positive */
   m->needs = folded ? "0.25" : "3";
   m->stencil = m->plain;
-  if (m->folded) PetscCall(PetscMalloc1(2 * l->M, &m->stencil));
+  if (m->folded) PetscCall(PetscMalloc1(n, &m->stencil));
   PetscCall(StencilRowsCreate(g, &marker_form, 0, 1, &m->rows));
   PetscCall(MatCreateShell(g->comm, 2 * l->n, slab, 2 * l->M, PETSC_DETERMINE, m, &m->E));
   PetscCall(MatShellSetOperation(m->E, MATOP_MULT, (void (*)(void))Mult_E));

@@ -6,8 +6,8 @@
 
    Markers are few beside the grid's faces: every rank knows the positions of all markers and spreads onto its own rows.
    So a spreading begins with one gather of the forces, and an interpolation ends with one sum of the ranks' parts that
-   goes to the bodies' owners. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, and E =
-   0.
+   goes to the bodies' owners. Points that bear no forces may stand behind the markers: E gives the velocity there too,
+   in `part`. In unbounded fluid (grid->free) nothing is on the grid: markers may be anywhere, and E = 0.
 
    Order: MarkersCreate, then for each set of positions MarkersCheck and MarkersPlace before E is used. */
 #pragma once
@@ -21,27 +21,29 @@ struct _p_Markers {
   Grid grid;     /* borrowed */
   Layout layout; /* borrowed */
   const Kernel *kernel;
-  PetscReal *X;       /* [2M] positions of all markers */
-  PetscBool folded;   /* stencils are folded at walls (wallfold.h) */
-  PetscBool scaled;   /* stencils are scaled near walls (WallScale) */
-  PetscReal least;    /* cells that markers keep from walls */
-  const char *needs;  /* `least` as text */
-  Stencil *stencil;   /* [2M]: component c of marker k at 2k + c */
-  Stencil *plain;     /* [2M]: stencils that are neither folded nor scaled */
-  StencilRows rows;   /* the stencils by rows, those of the row above this rank's included */
-  GridWindow window;  /* this rank's faces that all stencils reach, with the rows and columns next to them */
-  PetscScalar *force; /* [2M] work: forces of all markers */
-  PetscScalar *part;  /* [2M] work: velocities of all markers, summed over this rank's rows */
-  Mat E;              /* marker vector x velocity; MultTranspose spreads */
+  PetscInt points;        /* P, points that bear no forces */
+  const PetscReal *point; /* [2P] where they are when markers are placed; borrowed */
+  PetscReal *X;           /* [2M + 2P] positions of all markers and points */
+  PetscBool folded;       /* stencils are folded at walls (wallfold.h) */
+  PetscBool scaled;       /* stencils are scaled near walls (WallScale) */
+  PetscReal least;        /* cells that markers keep from walls */
+  const char *needs;      /* `least` as text */
+  Stencil *stencil;       /* [2M + 2P]: component c of marker k at 2k + c */
+  Stencil *plain;         /* [2M + 2P]: stencils that are neither folded nor scaled */
+  StencilRows rows;       /* the stencils by rows, those of the row above this rank's included */
+  GridWindow window;      /* this rank's faces that all stencils reach, with the rows and columns next to them */
+  PetscScalar *force;     /* [2M + 2P] work: forces of all markers, zero behind them */
+  PetscScalar *part; /* [2M + 2P]: velocities of all markers and points by the last E, summed over this rank's rows */
+  Mat E;             /* marker vector x velocity; MultTranspose spreads */
   PetscLogEvent spread, interpolate, respond;
 };
 
-/* MarkersCreate - for the bodies of a layout over a grid with the named kernel; not placed yet. folded: stencils are
-   folded at walls at rest and scaled near them, and markers may come to a quarter of a cell from walls. Collective.
-   MarkersLeaveUnscaled - stencils are folded but no longer scaled. The error of the box part is then smooth up to a
-   wall, and the box part makes up for the scaling. Not collective. */
+/* MarkersCreate - for the bodies of a layout, and points, over a grid with the named kernel; not placed yet. folded:
+   stencils are folded at walls at rest and scaled near them, and markers may come to a quarter of a cell from walls.
+   Collective. MarkersLeaveUnscaled - stencils are folded but no longer scaled. The error of the box part is then smooth
+   up to a wall, and the box part makes up for the scaling. Not collective. */
 PETSC_EXTERN PetscErrorCode MarkersCreate(Grid grid, Layout layout, const char kernel[], PetscBool folded,
-                                          Markers *markers);
+                                          PetscInt points, const PetscReal point[], Markers *markers);
 PETSC_EXTERN void MarkersLeaveUnscaled(Markers markers);
 PETSC_EXTERN PetscErrorCode MarkersDestroy(Markers *markers);
 
@@ -59,7 +61,7 @@ PETSC_EXTERN PetscErrorCode MarkersPlace(Markers markers, Vec X);
 PETSC_EXTERN PetscReal MarkersShortfall(Markers markers, PetscInt k, int comp, int dir);
 
 /* MarkersSpread - w += alpha E^T F; F a marker vector, w a velocity. ForcingSpread - to the forcing's values, in the
-   markers' window. MarkersInterpolate - U = E w. Collective. */
+   markers' window. MarkersInterpolate - U = E w; U NULL: `part` alone. Collective. */
 PETSC_EXTERN PetscErrorCode MarkersSpread(Markers markers, PetscReal alpha, Vec F, Vec w);
 PETSC_EXTERN PetscErrorCode ForcingSpread(Forcing *forcing, Markers markers, PetscReal alpha, Vec F);
 PETSC_EXTERN PetscErrorCode MarkersInterpolate(Markers markers, Vec w, Vec U);

@@ -104,7 +104,7 @@ static inline void RowAddEntry(StencilRows r, PetscInt columns, const RowEntry *
 void StencilRowSpread(StencilRows r, Field f, PetscInt j, PetscReal alpha, const PetscScalar F[], PetscScalar row[]) {
   const PetscInt *start = r->start[f] + j + r->below, columns = r->grid->columns[f];
   for (const RowEntry *e = r->entry[f] + start[0]; e < r->entry[f] + start[1]; e++)
-    RowAddEntry(r, columns, e, alpha, F, row);
+    if (F[e->source] != 0) RowAddEntry(r, columns, e, alpha, F, row);
 }
 
 void StencilRowInterpolate(StencilRows r, Field f, PetscInt j, const PetscScalar row[], PetscScalar U[]) {

@@ -52,7 +52,7 @@ static PetscErrorCode ResponseSolve(Response *r, Stream stream, const GridWindow
                            .source = r->source};
   PetscScalar *own;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(m->part, 2 * m->layout->M));
+  PetscCall(PetscArrayzero(m->part, 2 * (m->layout->M + m->points)));
   PetscCall(StreamSolve(stream, &rows, measures));
   if (r->measured) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(U, &own));

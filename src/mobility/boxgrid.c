@@ -24,7 +24,7 @@ static PetscErrorCode BoxGridPlace(BoxGrid *b, const char kernel[]) {
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(LayoutCreate(PETSC_COMM_SELF, 1, start, NULL, &b->layout));
-  PetscCall(MarkersCreate(b->fluid->grid, b->layout, kernel, PETSC_TRUE, &b->markers));
+  PetscCall(MarkersCreate(b->fluid->grid, b->layout, kernel, PETSC_TRUE, 0, NULL, &b->markers));
   MarkersLeaveUnscaled(b->markers);
   PetscCall(LayoutCreateVec(b->layout, 2, &b->F));
   PetscCall(VecDuplicate(b->F, &b->U));

@@ -2,15 +2,28 @@
 #include "bodies/seepage.h"
 #include "markers/streamresponse.h"
 
+/* Inner fluid and markers. E smooths the grid's velocity, which the spreading has smoothed, by `smoothed` times its
+   Laplacian (length^2). */
+static PetscErrorCode CreateMarkers(Mobility m, const MobilitySetting *setting, PetscReal *smoothed) {
+  const Kernel *k = KernelFind(setting->kernel);
+  const PetscReal cells = k ? (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8 : 0;
+  const Obstacles o = m->bodies->obstacles;
+  const Grid g = m->fluid->grid;
+  PetscFunctionBeginUser;
+  *smoothed = cells * PetscSqr(g->h);
+  if (!m->fluid->steady && o && o->free->M) PetscCall(InnerFluidCreate(o, g->h, *smoothed, &m->inner));
+  PetscCall(MarkersCreate(g, m->bodies->layout, setting->kernel, setting->near == NEAR_EXACT,
+                          m->inner ? m->inner->n : 0, m->inner ? m->inner->X : NULL, &m->markers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The markers' velocities beside the grid's: near field, double layer, lag. */
-static PetscErrorCode CreateLayers(Mobility m, const MobilitySetting *setting) {
-  const Kernel *k = m->markers->kernel;
-  const PetscReal cells = (KernelSecondMoment(k->along) + 3 * KernelSecondMoment(k->across)) / 4 - 1. / 8;
+static PetscErrorCode CreateLayers(Mobility m, const MobilitySetting *setting, PetscReal smoothed) {
   PetscFunctionBeginUser;
   if (setting->near != NEAR_EXACT || !m->bodies->layout->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NearFieldCreate(m->markers, m->bodies, m->fluid->nu, &m->near));
   if (setting->box_part) PetscCall(NearFieldAddBoxPart(m->near, setting->spec));
-  if (setting->lag) m->lag = cells * PetscSqr(m->fluid->grid->h) / m->fluid->nu;
+  if (setting->lag) m->lag = smoothed / m->fluid->nu;
   if (!setting->ratio) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DoubleLayerCreate(m->near, setting->ratio, &m->contrast));
   if (setting->box_part) PetscCall(DoubleLayerAddBoxPart(m->contrast, setting->spec));
@@ -18,14 +31,15 @@ static PetscErrorCode CreateLayers(Mobility m, const MobilitySetting *setting) {
 }
 
 PetscErrorCode MobilityCreate(Fluid fluid, Bodies bodies, const MobilitySetting *setting, Mobility *out) {
+  PetscReal smoothed;
   Mobility m;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
   *out = m;
   m->fluid = fluid;
   m->bodies = bodies;
-  PetscCall(MarkersCreate(fluid->grid, bodies->layout, setting->kernel, setting->near == NEAR_EXACT, &m->markers));
-  PetscCall(CreateLayers(m, setting));
+  PetscCall(CreateMarkers(m, setting, &smoothed));
+  PetscCall(CreateLayers(m, setting, smoothed));
   if (!setting->solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutCreateVec(bodies->layout, 2, &m->F));
   if (m->contrast) PetscCall(LayoutCreateVec(bodies->membrane->layout, 2, &m->G));
@@ -34,6 +48,10 @@ PetscErrorCode MobilityCreate(Fluid fluid, Bodies bodies, const MobilitySetting 
   m->stream = StokesStream(m->stokes);
   if (m->contrast) PetscCall(DipoleRowsCreate(fluid->grid, fluid->nu, &m->dipoles));
   if (!fluid->steady) PetscCall(VecDuplicate(m->F, &m->flow));
+  if (!m->inner) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(3 * bodies->obstacles->free->M, &m->rate[0], 3 * bodies->obstacles->free->M, &m->rate[1]));
+  PetscCall(StreamFlowsCreateVec(m->stream->flows, &m->sum));
+  PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &m->field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -46,6 +64,10 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscCall(DoubleLayerDestroy(&m->contrast));
   PetscCall(NearFieldDestroy(&m->near));
   PetscCall(MarkersDestroy(&m->markers));
+  PetscCall(InnerFluidDestroy(&m->inner));
+  PetscCall(PetscFree2(m->rate[0], m->rate[1]));
+  PetscCall(VecDestroy(&m->sum));
+  PetscCall(VecDestroy(&m->field));
   PetscCall(VecDestroy(&m->F));
   PetscCall(VecDestroy(&m->G));
   PetscCall(VecDestroy(&m->flow));
@@ -57,6 +79,7 @@ PetscErrorCode MobilityPlace(Mobility m, PetscReal a0, Vec X) {
   PetscFunctionBeginUser;
   PetscCall(FluidSetTimeCoefficient(m->fluid, a0));
   if (!m->bodies->layout->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  if (m->inner) InnerFluidPlace(m->inner);
   PetscCall(MarkersPlace(m->markers, X));
   if (m->near) PetscCall(NearFieldPlace(m->near));
   if (m->contrast) PetscCall(DoubleLayerPlace(m->contrast));
@@ -101,12 +124,23 @@ static PetscErrorCode MobilityFinish(Mobility m, Vec F, Vec G, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* rate += alpha INT_inside R^T u of the u that E has passed last (`known`: rate of the step so far, else of a product).
+ */
+static PetscErrorCode MobilityAddInner(Mobility m, PetscReal alpha, PetscBool known) {
+  PetscFunctionBeginUser;
+  if (!m->inner) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!known) PetscCall(PetscArrayzero(m->rate[0], 3 * m->bodies->obstacles->free->M));
+  PetscCall(InnerFluidAdd(m->inner, alpha, m->markers->part + 2 * m->bodies->layout->M, m->rate[known]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode MobilityApply(Mobility m, Vec F, Vec G, Vec U) {
   PetscFunctionBeginUser;
   if (m->stokes) {
     PetscCall(MobilitySetDipoles(m, G, PETSC_TRUE));
     PetscCall(MarkersRespond(m->markers, m->stream, m->dipoles, -1 / PetscSqr(m->fluid->grid->h), F, U));
     PetscCall(VecScale(U, MobilityGridPart(m, m->fluid->alpha)));
+    PetscCall(MobilityAddInner(m, m->fluid->alpha, PETSC_FALSE));
   } else
     PetscCall(VecSet(U, 0));
   PetscCall(MobilityFinish(m, F, G, U));
@@ -119,11 +153,29 @@ PetscErrorCode MobilityBegin(Mobility m, const MobilityKnown *q) {
   m->known = q;
   m->added = 0;
   m->measures = (StreamMeasures){0};
+  if (m->inner) { /* N(u*) */
+    PetscCall(PetscArrayzero(m->rate[1], 3 * m->bodies->obstacles->free->M));
+    PetscCall(MarkersInterpolate(m->markers, q->f->values, NULL));
+    PetscCall(MobilityAddInner(m, -1, PETSC_TRUE));
+  }
   PetscCall(q->F ? VecCopy(q->F, m->F) : VecSet(m->F, 0));
   if (m->contrast) PetscCall(q->G ? VecCopy(q->G, m->G) : VecSet(m->G, 0));
   if (!q->F || g->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcingSpread(q->f, m->markers, -1 / PetscSqr(g->h), q->F));
   if (q->outside && !g->wall[0] && !g->wall[1]) PetscCall(ForcingRemoveMean(q->f, m->fluid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* rate += INT_inside R^T (alpha u - uhat), u the velocity of the flow that has been made. */
+static PetscErrorCode MobilityFollowInner(Mobility m) {
+  const StreamPast *past = m->known->past;
+  PetscFunctionBeginUser;
+  if (!m->inner) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecAXPBY(m->sum, m->fluid->alpha, 0, past->made));
+  for (PetscInt j = 0; j < past->count; j++) PetscCall(VecAXPY(m->sum, -past->weight[j], past->flow[j]));
+  PetscCall(StreamFlowsVelocity(m->stream->flows, m->sum, m->field));
+  PetscCall(MarkersInterpolate(m->markers, m->field, NULL));
+  PetscCall(MobilityAddInner(m, 1, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -133,10 +185,12 @@ static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
   const MobilityKnown *q = m->known;
   StreamMeasures more;
   PetscFunctionBeginUser;
-  if (m->added == 1)
+  if (m->added == 1) {
     PetscCall(MarkersFollow(m->markers, m->stream, NULL, q->f, q->past, m->flow, &m->measures));
-  else {
+    PetscCall(MobilityFollowInner(m));
+  } else {
     PetscCall(MarkersAddFlow(m->markers, m->stream, -1 / PetscSqr(m->fluid->grid->h), F, U, q->past->made, &more));
+    PetscCall(MobilityAddInner(m, m->fluid->alpha, PETSC_TRUE));
     PetscCall(VecAXPY(m->flow, MobilityGridPart(m, m->fluid->alpha), U));
     m->measures.divergence += more.divergence;
     m->measures.slip += more.slip;

@@ -14,6 +14,7 @@
    all. */
 #pragma once
 #include "bodies/bodies.h"
+#include "bodies/innerfluid.h"
 #include "fluid/stokes/stokes.h"
 #include "mobility/doublelayer.h"
 #include "mobility/nearfield.h"
@@ -43,6 +44,9 @@ struct _p_Mobility {
   Vec F, G;                   /* all forces and the whole motion of the step so far */
   Vec flow;                   /* E u of the step so far, in fluid with inertia */
   StreamMeasures measures;    /* measures of u of the step so far */
+  InnerFluid inner;           /* of free bodies in fluid with inertia; else NULL */
+  PetscReal *rate[2];         /* [3 free] INT_inside R^T Du/Dt of the last MobilityApply, and of the step so far */
+  Vec sum, field;             /* work: a flow and its velocity on the grid; NULL without inner fluid */
 };
 
 /* The settings of a mobility. A part whose setting is zero is not made. */

@@ -45,7 +45,7 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   PetscCall(StokesCreate(c->fluid, &c->stokes));
   PetscCall(CreatePointLayout(c, fine, length, c->fluid->grid->h));
   const Layout points = c->all ? c->all : c->layout;
-  PetscCall(MarkersCreate(c->fluid->grid, points, kernel, PETSC_TRUE, &c->markers));
+  PetscCall(MarkersCreate(c->fluid->grid, points, kernel, PETSC_TRUE, 0, NULL, &c->markers));
   for (PetscInt v = 0; v < fine->bodies; v++) longest = PetscMax(longest, length[v]);
   PetscCall(MobilityTableCreate(&spec, c->markers->kernel, longest / 2, &c->table));
   PetscCall(MobilityTableSetUp(c->table, c->fluid->alpha));

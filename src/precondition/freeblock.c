@@ -6,7 +6,8 @@ struct _p_FreeBlock {
   PetscInt n, m;       /* 2W, 3 free */
   PetscReal *arm;      /* [2W] markers less the center of their body */
   float *response;     /* [m][2W] A^-1 m R */
-  PetscReal *S;        /* [m][m] R^T A^-1 m R, factored */
+  PetscReal *inertia;  /* [m] a0 M */
+  PetscReal *S;        /* [m][m] R^T A^-1 m R + a0 M, factored */
   PetscBLASInt *pivot; /* [m] */
   PetscReal *sum;      /* [m] work */
   PetscScalar *F;      /* [2W] work */
@@ -20,8 +21,8 @@ PetscErrorCode FreeBlockCreate(Obstacles o, FreeBlock *out) {
   b->obstacles = o;
   b->n = 2 * o->layout->M;
   b->m = 3 * o->free->M;
-  PetscCall(PetscMalloc6(b->n, &b->arm, b->n * b->m, &b->response, b->m * b->m, &b->S, b->m, &b->pivot, b->m, &b->sum,
-                         b->n, &b->F));
+  PetscCall(PetscMalloc7(b->n, &b->arm, b->n * b->m, &b->response, b->m, &b->inertia, b->m * b->m, &b->S, b->m,
+                         &b->pivot, b->m, &b->sum, b->n, &b->F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,7 +30,7 @@ PetscErrorCode FreeBlockDestroy(FreeBlock *block) {
   FreeBlock b = *block;
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree6(b->arm, b->response, b->S, b->pivot, b->sum, b->F));
+  PetscCall(PetscFree7(b->arm, b->response, b->inertia, b->S, b->pivot, b->sum, b->F));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -43,7 +44,8 @@ static void FreeBlockSums(FreeBlock b, const PetscScalar F[], PetscReal sum[]) {
   }
 }
 
-PetscErrorCode FreeBlockSetUp(FreeBlock b, FreeBlockInverse *inverse, void *context, PetscBool *done) {
+PetscErrorCode FreeBlockSetUp(FreeBlock b, PetscReal a0, const PetscReal mass[], FreeBlockInverse *inverse,
+                              void *context, PetscBool *done) {
   const Obstacles o = b->obstacles;
   float *R;
   PetscFunctionBeginUser;
@@ -64,6 +66,8 @@ PetscErrorCode FreeBlockSetUp(FreeBlock b, FreeBlockInverse *inverse, void *cont
       PetscCall(inverse(context, R, b->response + j * b->n));
       for (PetscInt k = 0; k < b->n; k++) b->F[k] = b->response[j * b->n + k];
       FreeBlockSums(b, b->F, b->S + j * b->m);
+      b->inertia[j] = mass ? a0 * mass[j] : 0;
+      b->S[j * b->m + j] += b->inertia[j];
     }
   }
   PetscCall(DenseFactor(b->m, b->S, b->pivot, done));
@@ -80,6 +84,7 @@ PetscErrorCode FreeBlockSolve(FreeBlock b, const float from[], PetscScalar q[], 
   PetscCall(DenseSolve(b->m, b->S, b->pivot, PETSC_FALSE, 1, b->sum));
   for (PetscInt j = 0; j < b->m; j++)
     for (PetscInt k = 0; k < b->n; k++) F[k] -= b->sum[j] * b->response[j * b->n + k];
+  for (PetscInt j = 0; j < b->m; j++) q[j] += b->inertia[j] * b->sum[j]; /* R^T F */
   for (PetscInt body = 0; body < o->layout->bodies; body++) {
     const PetscInt first = 3 * (o->motion[body].free - 1), at = 2 * o->layout->start[body];
     if (first >= 0) FreeBodyBalance(LayoutCount(o->layout, body), b->arm + at, q + first, F + at);

@@ -162,6 +162,7 @@ static PetscErrorCode InvertObstacles(void *block, const float x[], float y[]) {
 }
 
 static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
+  const InnerFluid inner = b->coupling->mobility->inner;
   PetscBool done = PETSC_TRUE;
   PetscLogEvent event;
   PetscFunctionBeginUser;
@@ -173,7 +174,8 @@ static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
     PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
   else
     PetscCall(MakeObstacleInverse(b, failed));
-  if (b->free && !*failed) PetscCall(FreeBlockSetUp(b->free, InvertObstacles, b, &done));
+  if (b->free && !*failed)
+    PetscCall(FreeBlockSetUp(b->free, b->age.made_for, inner ? inner->mass : NULL, InvertObstacles, b, &done));
   if (b->obstacles->free->M && !*failed)
     PetscCall(AgreeFlag(b->obstacles->layout->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));

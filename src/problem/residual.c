@@ -37,13 +37,18 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (5) m R q, (6) R^T F + load + the force of contact; y: the rows of obstacles. */
+/* (5) m R q, (6) R^T F + load + the force of contact, with inertia - a0 M q + INT_inside R^T Du/Dt; y: the rows of
+   obstacles. */
 static PetscErrorCode ReducedBodies(Reduced s, const CoupledProblem *q, const PetscScalar x[], PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
-  const PetscInt markers = BodiesObstacleNumbers(c->bodies);
+  const Mobility m = c->mobility;
+  const PetscInt markers = BodiesObstacleNumbers(c->bodies), first = 3 * c->bodies->obstacles->free->first;
   PetscFunctionBeginUser;
   FreeBodiesRows(c->bodies->obstacles, q ? q->load : NULL, x + u->velocity, y);
+  for (PetscInt k = 0; m->inner && c->fluid->alpha > 0 && k < FreeBodiesOwn(c->bodies->obstacles); k++)
+    y[markers + k] += m->rate[q != NULL][first + k] -
+                      c->fluid->alpha * m->inner->mass[first + k] * x[u->velocity + markers + k];
   PetscCall(
       RepulsionBodies(c->forces, PETSC_FALSE, -1 / c->fluid->a0, x, x + u->velocity + markers, NULL, y + markers));
   PetscFunctionReturn(PETSC_SUCCESS);

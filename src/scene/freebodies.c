@@ -41,6 +41,7 @@ static PetscErrorCode FreeBodyCheck(Scene scene, PetscInt b) {
 static PetscErrorCode FreeBodiesCheckScene(Scene s) {
   const SceneFreeBodies *own = &s->obstacles.free;
   const PetscInt inertia = s->fluid.inertia;
+  const PetscBool strains = inertia == INERTIA_CONVECTIVE && s->flow.type == FLOW_EXTENSION;
   PetscReal sum[2] = {0, 0}, most = 0;
   for (PetscInt b = 0; b < s->obstacles.outline.vesicles; b++)
     for (int c = 0; c < 2; c++) {
@@ -48,8 +49,8 @@ static PetscErrorCode FreeBodiesCheckScene(Scene s) {
       most = PetscMax(most, PetscAbsReal(ListEntry(&own->force, 2, b, c)));
     }
   const SceneRule rules[] = {
-    {inertia != INERTIA_AUTO && inertia != INERTIA_NONE,
-     "-obstacle_free {-obstacle_free}: not with -fluid_inertia {-fluid_inertia}; allowed: none"},
+    {strains || (inertia != INERTIA_AUTO && inertia != INERTIA_NONE && FlowIsCustom(&s->flow)),
+     "-obstacle_free {-obstacle_free}: not with -flow_type {-flow_type} and -fluid_inertia {-fluid_inertia}, which leave out how this flow itself accelerates the fluid in a body; allowed: -fluid_inertia none, or another flow"},
     {FluidSpecIsFree(&s->fluid) && PetscMax(PetscAbsReal(sum[0]), PetscAbsReal(sum[1])) > 1e-9 * most,
      "-obstacle_force {-obstacle_force}: adds up to (%g, %g) with -domain_bc_x free, where bodies under a force have no finite velocity in two dimensions; allowed: forces that add up to 0", {sum[0], sum[1]}}};
   return REFUSE(s, rules);

@@ -67,6 +67,23 @@ static PetscErrorCode KnownLoads(Scheme s, Coupled *d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The loads of free bodies, less the push that has been found; in fluid with inertia, which starts without loads, with
+   the history of their momentum. next.solid is used for it. */
+static PetscErrorCode KnownForces(Scheme s, Coupled *d, const BDF *b) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const InnerFluid inner = s->coupling->mobility->inner;
+  const PetscInt own = FreeBodiesOwn(o), first = 3 * o->free->first;
+  const PetscScalar *q;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < own; k++) d->load[k] = (inner && d->start ? 0 : o->load[first + k]) - d->load[k];
+  if (!inner || d->start) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(HistorySum(b->order, b->history, 1, STATES(s, solid), d->next.solid));
+  PetscCall(VecGetArrayRead(d->next.solid, &q));
+  for (PetscInt k = 0; k < own; k++) d->load[k] += inner->mass[first + k] * q[2 * o->layout->n + k];
+  PetscCall(VecRestoreArrayRead(d->next.solid, &q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* f = uhat - N(w*), minus the known forces F at Y = Xhat + u_inf/a0, the known motion u_inf + v dY/dt with the labels'
    speed v, and k, u_inf less the obstacles' velocity. next.w is used for w*. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
@@ -79,8 +96,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (d->place) PetscCall(KnownLoads(s, d));
   PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->shift, d->force, d->load));
-  for (PetscInt k = 0; d->place && k < FreeBodiesOwn(obstacles); k++)
-    d->load[k] = obstacles->load[3 * obstacles->free->first + k] - d->load[k];
+  if (d->place) PetscCall(KnownForces(s, d, b));
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
   PetscCall(VecCopy(s->background, d->moved));
   PetscCall(CouplingTread(s->coupling, 1, d->Y, d->moved));
@@ -102,7 +118,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   PetscFunctionBeginUser;
   BDFGuess(count, h->step, weight);
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
-  if (n->place) {
+  if (n->place && s->fluid->steady) {
     PetscCall(VecGetArray(n->solid, &F));
     PetscCall(FreeBodiesBalance(s->coupling->bodies->obstacles, d->load, F));
     PetscCall(VecRestoreArray(n->solid, &F));

@@ -256,6 +256,81 @@ def test_a_disc_falls_beside_a_vesicle(tmp_path):
     assert row["coupled_its"][5:].max() <= 4
 
 
+#: A disc in the middle of a box of ten radii.
+DISC = f"{ALONE} -domain_box 0,10,0,10 -obstacle_radius 1 -obstacle_center 5.013,5.027"
+TIMES = [0.1, 0.2, 0.4, 0.6, 1]
+
+
+def spun(folder, options):
+    """Rotation at TIMES of the disc, from rest under a unit torque in fluid with inertia."""
+    series = run_petves(folder, f"{DISC} {PERIODIC} -obstacle_torque 1 -time_end 1 -output_every 9 {options}").series
+    assert series["coupled_its"][2:].max() <= 5
+    return np.interp(TIMES, series["time"], series["obstacle_rotation_1"])
+
+
+@pytest.mark.parametrize("density", ["0.02", "1", "3"])
+@pytest.mark.parametrize("order, cells, within", [(2, 48, [1e-2, 3e-3, 1e-3, 1e-3, 1e-3]), (3, 96, 2.5e-3)])
+def test_a_torque_from_rest(density, order, cells, within, tmp_path):
+    """In unbounded fluid; the images are worth 1e-4."""
+    options = f"-domain_cells {cells},{cells} -fluid_inertia unsteady -scheme_order {order} -obstacle_density {density}"
+    assert (np.abs(spun(tmp_path, f"{options} -time_step .01") / EXACT["torque"][density] - 1) < within).all()
+
+
+def test_inertia_is_galilean_invariant(tmp_path):
+    """A disc that is spun in a stream turns as one in fluid at rest."""
+    options = "-domain_cells 48,48 -fluid_inertia convective -obstacle_density .3 -time_step .02 -coupled_ksp_rtol 1e-8"
+    rest, stream = (spun(tmp_path / v, f"{options} -flow_type uniform -flow_velocity {v}") for v in ("0,0", "1,.3"))
+    assert stream == pytest.approx(rest, rel=2e-3)
+
+
+def test_a_neutral_disc_in_shear_at_re_1(tmp_path):
+    """Inertia slows its rotation; the reference is a box without walls."""
+    options = f"{DISC} -domain_cells 64,64 -domain_bc_x periodic -flow_type shear -flow_center_y 5.027"
+    series = run_petves(tmp_path, f"{options} -fluid_inertia convective -time_step .015 -time_end 9").series
+    assert rates(series, 1, 0)[2] < -0.49
+    assert rates(series, 1)[2] == pytest.approx(EXACT["sheared"]["rotation"], rel=0.01)
+
+
+@pytest.mark.parametrize("order, more", [(2, 2.9), (3, 5.5)])
+def test_order_in_time_with_inertia(order, more, tmp_path):
+    """A heavy ellipse that turns and falls to the middle of a sheared channel: half the step, and half of that."""
+    options = f"{ellipses(tmp_path, (5.013, 5.4, 1.2, 0.7))} -domain_box 0,10,0,10 -domain_cells 48,48 -time_end 3.2"
+    options += " -vesicle_shape none -domain_bc_x periodic -flow_type shear -flow_center_y 5 -fluid_inertia convective"
+    options += f" -obstacle_density 3 -scheme_order {order} -coupled_ksp_rtol 1e-10 -time_cfl_limit 2 -output_every 9"
+    ends = []
+    for step in (0.08, 0.04, 0.02):
+        series = run_petves(tmp_path / str(step), f"{options} -time_step {step}").series
+        ends.append([series[f"obstacle_{name}_1"][-1] for name in ("angle", "center_y", "rotation")])
+    first, second = np.abs(np.diff(ends, axis=0))
+    assert (first > more * second).all() and first.max() < 2e-3
+
+
+@pytest.mark.parametrize("inertia", ["unsteady", "convective"])
+def test_a_heavy_disc_reaches_its_speed(inertia, tmp_path):
+    """From rest to the speed of quasi-steady flow, with 1 - exp(-t resistance/mass) for an upper bound."""
+    options = f"{CHANNEL} -domain_cells 96,32 -flow_drive flux -obstacle_free all -obstacle_radius .1 -time_step .005"
+    options += f" -obstacle_density 3 -fluid_gravity 1,0 -fluid_inertia {inertia} -time_end .5 -coupled_ksp_rtol 1e-8"
+    series = run_petves(tmp_path, options).series
+    speed, load = series["obstacle_velocity_x_1"], 2 * np.pi * 0.1**2
+    last = load / REFERENCES["obstacles"]["faxen"]
+    assert speed[0] == 0 and (np.diff(speed[:20]) > 0).all()
+    assert (speed <= last * (1.0001 - np.exp(-series["time"] * load / last / (3 * np.pi * 0.1**2)))).all()
+    assert speed[-1] == pytest.approx(last, rel=1e-4)
+    assert series["obstacle_force_x_1"][-1] == pytest.approx(-load, rel=1e-7)
+
+
+@pytest.mark.parametrize("steps", ["", "-time_adapt error -time_adapt_tol 1e-4"])
+@pytest.mark.parametrize("inertia", ["unsteady", "convective"])
+def test_ranks_and_restart_with_inertia(inertia, steps, tmp_path):
+    """A light ellipse in a vesicle and a heavy one beside it: the same on 2 and 3 ranks; a restart has the same bits."""
+    options = f"{ellipses(tmp_path, (-0.55, 0.1, 0.16, 0.1), (0.5, -0.2, 0.3, 0.2))} {steps} -flow_type shear"
+    options += " -domain_box -1.5,1.5,-1.5,1.5 -domain_cells 96,96 -domain_bc_x periodic -vesicle_center -.5,.1"
+    options += f" -vesicle_semi_axes .3,.4 -obstacle_density .3,3 -obstacle_force 1,0,0,-2 -fluid_inertia {inertia}"
+    options += " -time_step .01 -output_every .1 -coupled_ksp_rtol 1e-8 -output_overwrite"
+    columns = [f"obstacle_{name}_{body}" for name in ("center_y", "angle", *RATES) for body in (1, 2)]
+    agree(tmp_path, options, 0.1, 0.5, ("center_x", "inclination", "coupled_its", *columns), rel=1e-6)
+
+
 @pytest.mark.parametrize("steps", ["", "-time_adapt error -time_adapt_tol 1e-4"])
 def test_ranks_and_restart(steps, tmp_path):
     """An ellipse beside a vesicle and one in it: the same on three ranks; a restart has the same bits."""

@@ -53,6 +53,9 @@ CURVES = {
     "nested": [*circle(20)[::-1], "", *circle(20, 0.8)[::-1]],
     "sliding line": ["# velocity 1 0", *(f"{0.1 * k - 1:.15g} 0" for k in range(21))],
     "long ellipse": ["# rotation 30", *(f"{0.8 * np.cos(a):.15g} {0.2 * np.sin(a):.15g}" for a in AROUND)],
+    "hook": [
+        f"{r * np.cos(a):.15g} {r * np.sin(a):.15g}" for r, way in ((0.8, 1), (0.3, -1)) for a in 4 * AROUND[::way] / 6
+    ],
     "flat": [f"{0.01 * k} 0" for k in range(20)],
 }
 
