@@ -14,7 +14,7 @@ import numpy as np
 OF_VESICLES = ("vesicle_bending", "vesicle_viscosity_ratio", "vesicle_density_difference")
 OF_VESICLES += ("membrane_stretching", "membrane_memory")
 OF_SOLIDS = ("obstacle_center", "obstacle_radius", "obstacle_velocity", "obstacle_rotation")
-OF_FREE = ("obstacle_force", "obstacle_torque")
+OF_FREE = ("obstacle_force", "obstacle_torque", "obstacle_density")
 
 PROJECTIONS = ["split", "penalty"]
 
@@ -240,12 +240,13 @@ class Draw:
 
     def bodies(self, kind: str, found: list, rate: float) -> None:
         """What obstacles do."""
-        pick, free = self.random.choice, kind in ("posts", "closed") and self.text["fluid_inertia"] in ("none", "auto")
-        if free := free and self.chance(0.5):
+        pick, carried = self.random.choice, (self.text["flow_type"], self.text["fluid_inertia"])
+        if free := kind in ("posts", "closed") and carried != ("extension", "convective") and self.chance(0.5):
             self.text["obstacle_free"] = "all"
             push = self.numbers["fluid_viscosity"] * rate * self.h**2 * 10
             self.numbers["obstacle_force"] = push * np.array([[pick([0, 1, -2]), pick([0, 1])] for _ in found])
             self.numbers["obstacle_torque"] = push * self.h * np.array([pick([0, 2, -1]) for _ in found])
+            self.numbers["obstacle_density"] = np.array([pick([1, 0.1, 3]) for _ in found])
         moving = not free and kind in ("posts", "closed", "container") and self.chance(0.7)
         turns = [[pick([0, 1, -1]), pick([0, 1]), pick([1, -1])] for _ in found]
         self.numbers["obstacle_velocity"] = 2 * self.h * rate * moving * np.array([turn[:2] for turn in turns])
