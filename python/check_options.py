@@ -76,7 +76,7 @@ def stub(binary: str) -> str:
     """Return the stub: each option with its words, or any value, and what it is."""
     lines = []
     for option in described(binary):
-        words = option.allowed.split("|") if "|" in option.allowed else []
+        words = option.allowed.split("|") if "|" in option.allowed and "one a vesicle" not in option.what else []
         kind = f"Literal[{', '.join(map(repr, words))}] | None" if words else "Value"
         lines.append(f"    {option.name[1:]}: {kind}  # {option.what}\n")
     return STUB_HEAD + "".join(lines) + "".join(f"    {name}: Value  # PETSc's, of the solver\n" for name in OF_SOLVERS)

@@ -87,10 +87,10 @@ class Options(TypedDict, total=False):
     contact_potential_distance: Value  # d, at which the potential is least (length)
     contact_potential_exponents: Value  # m,n with m > n
     membrane_derivative: Literal['fd', 'bending', 'spectral'] | None  # derivatives along the membrane: finite differences, without area target; spectral bending, spectral bending and edges; split, penalty: fd
-    membrane_law: Literal['inextensible', 'hooke', 'green', 'neo_hookean'] | None  # coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5)
+    membrane_law: Value  # coupled: how membranes stretch, tension T by the stretch L: not at all; T = E_s (L - 1); T = E_s/2 (L^3 - L); T = E_s/3 (L^1.5 - L^-1.5); one for all, or one a vesicle or kind
     membrane_stretching: Value  # E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)
     membrane_moment: Literal['quadratic', 'angle', 'helfrich'] | None  # bending energy of membranes that stretch, a length at rest: c_b/2 times |X_ss|^2 by the length at rest s, the angle a length squared, or the curvature squared times the stretch
-    membrane_viscosity: Value  # of membranes that stretch: tension over the rate of the stretch (length^3/time)
+    membrane_viscosity: Value  # of membranes that stretch: tension over the rate of the stretch, one for all, or one a vesicle or kind (length^3/time)
     membrane_permeability: Value  # coupled: water passes the membranes at this times its pressure inside less that outside; 0: none (time/length)
     membrane_osmotic: Value  # of permeable membranes: osmotic pressures inside, at the first area, and outside; the higher one draws water (length^2/time^2)
     membrane_memory: Value  # coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature

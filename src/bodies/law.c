@@ -16,7 +16,7 @@ PetscErrorCode LawCreate(Membrane m, PetscReal h, PetscInt vesicle, PetscInt end
   PetscCall(PetscNew(law));
   **law = (struct _p_MembraneLaw){m, h * h, vesicle, end, start[vesicle], start[end] - start[vesicle]};
   PetscCall(PetscMalloc1(2 * (*law)->n, &(*law)->tau));
-  if (m->law != LAW_INEXTENSIBLE)
+  if (m->stretches)
     PetscCall(PetscCalloc3((*law)->n, &(*law)->c, (*law)->n, &(*law)->viscous, (*law)->n, &(*law)->excess));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,11 +49,11 @@ void LawPlace(MembraneLaw law, PetscReal a0, const PetscScalar X[]) {
   MembraneTangents(m, law->vesicle, law->end, X, law->tau);
   law->a0 = a0;
   for (PetscInt v = law->vesicle; v < law->end && law->c; v++)
-    for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1); k++) {
+    for (PetscInt k = LawOffset(law, v); k < LawOffset(law, v + 1) && MembraneStretches(m, v); k++) { /* others: 0 */
+      const Material *of = &m->material[v];
       const PetscReal q = PetscSqr(law->tau[2 * k]) + PetscSqr(law->tau[2 * k + 1]);
-      const Stretch s = StretchOf(m->law, q);
-      const PetscReal viscous = m->viscosity * a0, resistance = 2 * m->modulus[v] * s.slope * q + viscous;
-      if (!MembraneStretches(m, v)) continue; /* zero */
+      const Stretch s = StretchOf(of->law, q);
+      const PetscReal viscous = of->viscosity * a0, resistance = 2 * of->modulus * s.slope * q + viscous;
       law->viscous[k] = viscous / resistance;
       law->c[k] = a0 * m->ds[v] * q / resistance;
       law->excess[k] = 0.5 * s.sigma / s.slope - 0.5 * (q - 1);

@@ -22,7 +22,7 @@ static void MembraneCurvature(Membrane m, PetscInt v, PetscReal part, const Pets
 }
 
 PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given, Membrane *out) {
-  const PetscReal *bending = given->each;
+  const Material *material = given->material;
   const PetscInt vesicles = layout->bodies;
   MembraneWork *w;
   Membrane m;
@@ -32,20 +32,18 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   w = &m->work;
   m->layout = layout;
   m->bending = 0;
-  for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, bending[v]);
+  for (PetscInt v = 0; v < vesicles; v++) m->bending = PetscMax(m->bending, material[v].bending);
   m->derivative = (DerivativeType)given->derivative;
-  m->law = (LawType)given->law;
   m->moment = (MomentType)given->moment;
-  m->viscosity = given->viscosity;
   m->permeability = given->permeability;
   for (int k = 0; k < 2; k++) m->osmotic[k] = given->osmotic.n == 2 ? given->osmotic.v[k] : 0;
   PetscCall(PetscMalloc7(vesicles, &m->ds, vesicles, &m->A0, vesicles, &m->L0, vesicles, &m->spectral, vesicles,
-                         &m->arc, vesicles, &m->part, vesicles, &m->modulus));
+                         &m->arc, vesicles, &m->part, vesicles, &m->material));
   PetscCall(PetscMalloc5(2 * layout->M, &w->stretching, 2 * layout->M, &w->bending, 2 * layout->M, &w->measures,
                          2 * layout->M, &w->restore, 2 * layout->M, &w->treading));
   PetscCall(PetscMalloc1(4 * layout->M, &w->memory));
   for (PetscInt v = 0; v < vesicles && !m->memory; v++)
-    if (given->remembered[v] > 0) PetscCall(PetscMalloc1(layout->M, &m->memory));
+    if (material[v].memory > 0) PetscCall(PetscMalloc1(layout->M, &m->memory));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
     const PetscReal *rest = (given->rest_X ? given->rest_X : X) + 2 * layout->start[v];
@@ -57,9 +55,11 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
     m->arc[v] = ArcLength(m, v, rest);
     m->L0[v] = measures.length;
     m->ds[v] = measures.length / n;
-    m->modulus[v] = given->modulus[v];
-    if (m->memory) MembraneCurvature(m, v, given->remembered[v], rest, m->memory + layout->start[v]);
-    m->part[v] = m->bending > 0 ? bending[v] / m->bending : 1;
+    m->material[v] = material[v];
+    if (MembraneStretches(m, v)) m->stretches = PETSC_TRUE;
+    if (material[v].viscosity > 0) m->viscous = PETSC_TRUE;
+    if (m->memory) MembraneCurvature(m, v, material[v].memory, rest, m->memory + layout->start[v]);
+    m->part[v] = m->bending > 0 ? material[v].bending / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,7 +69,7 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
-  PetscCall(PetscFree7(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part, m->modulus));
+  PetscCall(PetscFree7(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part, m->material));
   PetscCall(PetscFree(m->work.memory));
   PetscCall(PetscFree(m->memory));
   PetscCall(PetscFree5(m->work.stretching, m->work.bending, m->work.measures, m->work.restore, m->work.treading));

@@ -25,12 +25,12 @@ struct _p_Membrane {
   PetscReal *A0, *L0;     /* [vesicles] initial area, length at rest */
   PetscReal bending;      /* the largest c_b */
   PetscReal *part;        /* [vesicles] c_b of each over the largest c_b; 1 where the largest is 0 */
-  LawType law;            /* of the membranes that stretch */
-  MomentType moment;      /* how they bend */
+  Material *material;     /* [vesicles] */
+  PetscBool stretches;    /* one of them */
+  PetscBool viscous;      /* one of them, against its stretching */
+  MomentType moment;      /* how membranes that stretch bend */
   PetscReal permeability; /* P (time/length); 0: none */
   PetscReal osmotic[2];   /* pressures inside and outside (length^2/time^2) */
-  PetscReal viscosity;    /* of membranes that stretch (length^3/time) */
-  PetscReal *modulus;     /* [vesicles] E_s (length^3/time^2); 0 of inextensible ones */
   PetscReal *memory;      /* [M] curvature that bending prefers (1/length); NULL: none */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
@@ -43,7 +43,7 @@ struct _p_Membrane {
 PETSC_EXTERN PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given,
                                            Membrane *membrane);
 static inline PetscBool MembraneStretches(Membrane membrane, PetscInt vesicle) {
-  return membrane->modulus[vesicle] > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return membrane->material[vesicle].law != LAW_INEXTENSIBLE ? PETSC_TRUE : PETSC_FALSE;
 }
 PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
 

@@ -15,10 +15,11 @@ static PetscErrorCode StretchingEnergy(void *context, Instant at, const PetscSca
   PetscScalar *tau = m->work.measures;
   PetscFunctionBeginUser;
   for (PetscInt v = m->layout->own; v < m->layout->end; v++) {
+    const Material *of = &m->material[v];
     if (!MembraneStretches(m, v)) continue;
     MembraneTangents(m, v, v + 1, X + 2 * LayoutOffset(m->layout, v), tau);
     for (PetscInt k = 0; k < LayoutCount(m->layout, v); k++)
-      E[v] += m->modulus[v] * m->ds[v] * StretchOf(m->law, PetscSqr(tau[2 * k]) + PetscSqr(tau[2 * k + 1])).energy;
+      E[v] += of->modulus * m->ds[v] * StretchOf(of->law, PetscSqr(tau[2 * k]) + PetscSqr(tau[2 * k + 1])).energy;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -26,7 +27,7 @@ static PetscErrorCode StretchingEnergy(void *context, Instant at, const PetscSca
 PetscErrorCode ForceCreate_Stretching(Bodies bodies, Grid grid, Scene scene, Force *force) {
   const Membrane m = bodies->membrane;
   PetscFunctionBeginUser;
-  if (m->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!m->stretches) PetscFunctionReturn(PETSC_SUCCESS);
   *force = (Force){.name = "stretching", .reach = FORCE_WITHIN, .context = m, .energy = StretchingEnergy};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,7 +18,8 @@ typedef struct {
 } IntList;
 
 /* What a row's offset holds: PetscReal, PetscInt, PetscBool, PetscInt (index in the range's list),
-   char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN] (a file, or any text), RealList, IntList. */
+   char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN] (a file, or any text), RealList, IntList (where the range is
+   a list, of indices in it). */
 typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_ENUM, OPT_NAME, OPT_PATH, OPT_TEXT, OPT_REALS, OPT_INTS } OptionType;
 
 /* What has to be there for an option to mean something: an enum in the values that is one of some, or a condition. */

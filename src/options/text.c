@@ -23,23 +23,6 @@ static PetscBool OptionInRange(const char *range, PetscReal x) {
   return PETSC_TRUE;
 }
 
-/* One number of a value; where the value is a list, a message names both. */
-static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const char *all, const char *text,
-                                        PetscReal *x) {
-  const PetscBool integer = o->type == OPT_INT || o->type == OPT_INTS;
-  const char *what = integer ? "an integer" : "a number";
-  char part[128] = "";
-  PetscFunctionBeginUser;
-  if (strcmp(text, all)) PetscCall(PetscSNPrintf(part, sizeof(part), "\"%.100s\" is ", text));
-  PetscCheck(OptionParseReal(text, x) &&
-                 (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
-             comm, PETSC_ERR_USER_INPUT, "%s %s: %snot %s; allowed: %s%s%s", o->name, all, part, what, what,
-             strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
-  PetscCheck(OptionInRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: %sout of range; allowed: %s %s", o->name,
-             all, part, what, o->range);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Index of text in "a|b|c", or -1. */
 static PetscInt OptionIndexInList(const char *list, const char *text) {
   const size_t length = strlen(text);
@@ -50,6 +33,30 @@ static PetscInt OptionIndexInList(const char *list, const char *text) {
     p += n + (p[n] == '|');
   }
   return -1;
+}
+
+/* One number of a value, or the index of a word in the range's list; where the value is a list, a message names both.
+ */
+static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const char *all, const char *text,
+                                        PetscReal *x) {
+  const PetscBool integer = o->type == OPT_INT || o->type == OPT_INTS;
+  const char *what = integer ? "an integer" : "a number";
+  char part[128] = "";
+  PetscFunctionBeginUser;
+  if (strcmp(text, all)) PetscCall(PetscSNPrintf(part, sizeof(part), "\"%.100s\" is ", text));
+  if (strchr(o->range, '|')) {
+    const PetscInt index = OptionIndexInList(o->range, text);
+    PetscCheck(index >= 0, comm, PETSC_ERR_USER_INPUT, "%s %s: %sunknown; allowed: %s", o->name, all, part, o->range);
+    *x = (PetscReal)index;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCheck(OptionParseReal(text, x) &&
+                 (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
+             comm, PETSC_ERR_USER_INPUT, "%s %s: %snot %s; allowed: %s%s%s", o->name, all, part, what, what,
+             strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
+  PetscCheck(OptionInRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: %sout of range; allowed: %s %s", o->name,
+             all, part, what, o->range);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Numbers between commas, x to be freed. */
@@ -95,7 +102,7 @@ static PetscErrorCode OptionParseList(MPI_Comm comm, const OptionRow *o, const c
 
 /* One word: a truth, or a name of the range. */
 static PetscErrorCode OptionParseWord(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
-  PetscInt index;
+  PetscReal index;
   PetscFunctionBeginUser;
   if (o->type == OPT_BOOL) {
     const PetscInt yes = OptionIndexInList("|true|yes|on|1", text), no = OptionIndexInList("false|no|off|0", text);
@@ -104,10 +111,9 @@ static PetscErrorCode OptionParseWord(MPI_Comm comm, const OptionRow *o, const c
     *(PetscBool *)place = no >= 0 ? PETSC_FALSE : PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  index = OptionIndexInList(o->range, text);
-  PetscCheck(index >= 0, comm, PETSC_ERR_USER_INPUT, "%s %s: unknown; allowed: %s", o->name, text, o->range);
+  PetscCall(OptionParseNumber(comm, o, text, text, &index));
   if (o->type == OPT_ENUM)
-    *(PetscInt *)place = index;
+    *(PetscInt *)place = (PetscInt)index;
   else
     PetscCall(PetscStrncpy((char *)place, text, OPTION_MAX_NAME));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -162,23 +168,22 @@ PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, 
   const RealList *list = (const RealList *)place;
   const PetscBool listed = o->type == OPT_REALS || o->type == OPT_INTS;
   const PetscBool real = o->type == OPT_REALS || o->type == OPT_REAL;
+  const PetscBool word = o->type == OPT_ENUM || (o->type == OPT_INTS && strchr(o->range, '|'));
   const void *number = listed ? (const void *)list->v : place;
-  const PetscInt n = listed ? list->n : o->type == OPT_REAL || o->type == OPT_INT ? 1 : 0;
-  const size_t room = PETSC_MAX_PATH_LEN + DIGITS * (size_t)n;
+  const PetscInt n = listed ? list->n : o->type == OPT_REAL || o->type == OPT_INT || word ? 1 : 0;
+  const size_t room = PETSC_MAX_PATH_LEN + (DIGITS + OPTION_MAX_NAME) * (size_t)n;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(room, text));
   if (o->type == OPT_BOOL) PetscCall(PetscStrncpy(*text, *(const PetscBool *)place ? "true" : "false", room));
   if (o->type == OPT_NAME || o->type == OPT_PATH || o->type == OPT_TEXT)
     PetscCall(PetscStrncpy(*text, (const char *)place, room));
-  if (o->type == OPT_ENUM) {
-    const char *p = o->range;
-    for (PetscInt k = *(const PetscInt *)place; k > 0; k--) p = strchr(p, '|') + 1;
-    PetscCall(PetscStrncpy(*text, p, strcspn(p, "|") + 1));
-  }
   char *end = *text;
   for (PetscInt k = 0; k < n; k++, end += strlen(end)) {
-    const char *comma = k ? "," : "";
-    if (real)
+    const char *comma = k ? "," : "", *p = o->range;
+    for (PetscInt i = word ? ((const PetscInt *)number)[k] : 0; i > 0; i--) p = strchr(p, '|') + 1;
+    if (word)
+      PetscCall(PetscSNPrintf(end, OPTION_MAX_NAME, "%s%.*s", comma, (int)strcspn(p, "|"), p));
+    else if (real)
       PetscCall(PetscSNPrintf(end, DIGITS + 1, "%s%.17g", comma, (double)((const PetscReal *)number)[k]));
     else
       PetscCall(PetscSNPrintf(end, DIGITS + 1, "%s%" PetscInt_FMT, comma, ((const PetscInt *)number)[k]));

@@ -68,14 +68,15 @@ static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
     PetscCall(PetscFree(x));
   }
   H5Put(f, "vesicle_start", H5_INT, l->bodies + 1, l->start);
-  if (l->bodies) H5Put(f, "vesicle_c_b", H5_REAL, l->bodies, scene->membrane.each);
-  if (l->bodies) PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
-  if (SceneHasContrast(scene)) {
-    PetscReal *ratio;
-    PetscCall(PetscMalloc1(l->bodies, &ratio));
-    for (PetscInt v = 0; v < l->bodies; v++) ratio[v] = SceneViscosityRatio(scene, v);
-    H5Put(f, "vesicle_viscosity_ratio", H5_REAL, l->bodies, ratio);
-    PetscCall(PetscFree(ratio));
+  if (l->bodies) {
+    PetscReal *each;
+    PetscCall(PetscMalloc1(l->bodies, &each));
+    for (PetscInt v = 0; v < l->bodies; v++) each[v] = scene->membrane.material[v].bending;
+    H5Put(f, "vesicle_c_b", H5_REAL, l->bodies, each);
+    for (PetscInt v = 0; v < l->bodies; v++) each[v] = SceneViscosityRatio(scene, v);
+    if (SceneHasContrast(scene)) H5Put(f, "vesicle_viscosity_ratio", H5_REAL, l->bodies, each);
+    PetscCall(PetscFree(each));
+    PetscCall(FramesPutLines(f, l, NULL, "/vesicle/lines", "/vesicle/number"));
   }
   PetscCall(FramesPutObstacles(f, &scene->obstacles, s->coupling->bodies->obstacles));
   H5PutText(f, "version", PETVES_VERSION);
@@ -105,7 +106,7 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
                                 {"/vesicle/velocity", M, 2, .unit = "length/time"},
                                 {"/vesicle/tension", M, 1, .unit = "length^3/time^2"},
                                 {"/obstacle/force", W, 2, .unit = "length^3/time^2"},
-                                {"/vesicle/stretch", s->membrane->law != LAW_INEXTENSIBLE ? M : 0, 1, .unit = "1"},
+                                {"/vesicle/stretch", s->membrane->stretches ? M : 0, 1, .unit = "1"},
                                 {"/obstacle/markers", moving, 2, .unit = "length"},
                                 {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2, .unit = "length"},
                                 {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2, .unit = "length"},
@@ -171,7 +172,7 @@ PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
     if (name == STATE_SOLIDS) ObstaclesOrder(o, f->all, f->all);
     AppendedSet(file, k++, f->all);
   }
-  if (s->membrane->law != LAW_INEXTENSIBLE) {
+  if (s->membrane->stretches) {
     PetscCall(StateStretch(s, f->all));
     AppendedSet(file, k++, f->all);
   }

@@ -45,7 +45,7 @@ PetscErrorCode StateShow(Scheme s, StatePartName name, PetscReal values[]) {
   PetscReal *stretch;
   PetscFunctionBeginUser;
   PetscCall(StateGather(&part, values));
-  if (name != STATE_TENSION || s->membrane->law == LAW_INEXTENSIBLE) PetscFunctionReturn(PETSC_SUCCESS);
+  if (name != STATE_TENSION || !s->membrane->stretches) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(part.n, &stretch));
   PetscCall(StateStretch(s, stretch));
   for (PetscInt k = 0; k < part.n; k++) values[k] *= stretch[k];

@@ -87,7 +87,7 @@ static PetscErrorCode TablePrintVesicles(MPI_Comm comm, const Summary *s, PetscI
   PetscFunctionBeginUser;
   PetscCall(PetvesSay(comm, "  energy, kinetic and bending   %.6e  %.6e\n", (double)r[COLUMN_KINETIC],
                       (double)r[COLUMN_BENDING]));
-  if (s->scheme->membrane->law == LAW_INEXTENSIBLE)
+  if (!s->scheme->membrane->stretches)
     PetscCall(PetvesSay(comm, "  area error, length error      %.3e  %.3e\n", (double)r[COLUMN_AREA_ERROR],
                         (double)r[COLUMN_LENGTH_ERROR]));
   else

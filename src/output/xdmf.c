@@ -89,7 +89,7 @@ static void PrintVesicles(FILE *f, PetscInt t, Membrane m, PetscBool wrapped) {
   PrintLines(f, "vesicle", l, l->bodies);
   PrintSlab(f, "", &markers);
   fprintf(f, "</Geometry>\n");
-  for (int k = 0; k < (m->law != LAW_INEXTENSIBLE ? 2 : 1); k++) {
+  for (int k = 0; k < (m->stretches ? 2 : 1); k++) {
     fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Node\">\n", k ? "stretch" : "tension");
     PrintSlab(f, "", &edges[k]);
     fprintf(f, "</Attribute>");

@@ -55,13 +55,12 @@ PetscErrorCode SharedShapesDestroy(SharedShapes *shapes) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether two vesicles have as many markers, as far apart, the same stiffness and the same viscosity. */
+/* Whether two vesicles have as many markers, as far apart, equal membranes and the same viscosity. */
 static PetscBool AreAlike(Coupling c, PetscInt v, PetscInt w) {
   const Membrane m = c->membrane;
   if (c->mobility->contrast && c->mobility->contrast->ratio[v] != c->mobility->contrast->ratio[w]) return PETSC_FALSE;
   return LayoutCount(m->layout, v) == LayoutCount(m->layout, w) &&
-         PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && m->part[v] == m->part[w] &&
-         m->modulus[v] == m->modulus[w];
+         PetscAbsReal(m->ds[v] - m->ds[w]) < 1e-6 * m->ds[v] && MaterialsAlike(&m->material[v], &m->material[w]);
 }
 
 /* What of a shape's distance is due to its label speed, in the mode in which that counts most beside the I and the

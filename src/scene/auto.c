@@ -68,7 +68,7 @@ static PetscReal VesicleCompression(Scene scene, PetscInt v) {
 static PetscReal VesicleSqueeze(Scene scene) {
   PetscReal largest = 0;
   for (PetscInt v = 0; v < scene->shape.vesicles; v++)
-    if (scene->membrane.each[v] > 0)
+    if (scene->membrane.material[v].bending > 0)
       largest = PetscMax(largest, VesicleCompression(scene, v) * SceneMembraneTime(scene, v));
   return largest > SQUEEZED ? largest : 0;
 }

@@ -123,7 +123,9 @@ static PetscErrorCode SceneCheckVesicleLists(Scene scene) {
   PetscCall(SceneCheckKinds(scene, "-vesicle_area", own->area.n, 1));
   PetscCall(SceneCheckKinds(scene, "-vesicle_reduced_area", own->reduced_area.n, 1));
   PetscCall(SceneCheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-membrane_law", scene->membrane.law.n, 1));
   PetscCall(SceneCheckKinds(scene, "-membrane_stretching", scene->membrane.stretching.n, 1));
+  PetscCall(SceneCheckKinds(scene, "-membrane_viscosity", scene->membrane.viscosity.n, 1));
   PetscCall(SceneCheckKinds(scene, "-membrane_memory", scene->membrane.memory.n, 1));
   for (PetscInt k = 0; k < own->reduced_area.n; k++)
     PetvesCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
@@ -187,13 +189,26 @@ static PetscReal SceneLargest(const RealList *list) {
 static PetscErrorCode SceneCheckMembranes(Scene s) {
   const SceneMembrane *m = &s->membrane;
   const ScenePotential *p = &s->potential;
-  const PetscBool paper = strcmp(s->scheme.type, "coupled"), stretches = m->law != LAW_INEXTENSIBLE;
-  const PetscReal modulus = SceneLargest(&m->stretching), memory = SceneLargest(&m->memory);
+  const PetscBool paper = strcmp(s->scheme.type, "coupled");
+  const PetscReal memory = SceneLargest(&m->memory);
   const PetscBool bends = SceneLargest(&m->stiffness) > 0;
+  /* entries of the lists of laws and moduli; lists of unlike lengths are refused elsewhere */
+  const PetscInt laws = m->law.n, moduli = m->stretching.n;
+  const PetscInt entries = PetscMin(laws, moduli) > 1 ? PetscMin(laws, moduli) : PetscMax(laws, moduli);
+  PetscBool stretches = PETSC_FALSE;
+  PetscInt without = 0;  /* laws without a modulus */
+  PetscReal lawless = 0; /* a modulus without a law */
+  for (PetscInt k = 0; k < entries; k++) {
+    const PetscReal modulus = ListEntry(&m->stretching, 1, k, 0);
+    const PetscBool law = m->law.v[laws > 1 ? k : 0] != LAW_INEXTENSIBLE ? PETSC_TRUE : PETSC_FALSE;
+    if (law) stretches = PETSC_TRUE;
+    if (law && modulus == 0) without++;
+    if (!law && modulus > 0) lawless = modulus;
+  }
   const SceneRule rules[] = {
-    {!stretches && modulus > 0,
-     "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {modulus}},
-    {stretches && modulus == 0,
+    {lawless > 0,
+     "-membrane_stretching %g: -membrane_law inextensible has no modulus; allowed: 0, or -membrane_law hooke, green or neo_hookean", {lawless}},
+    {without > (laws > 1 ? 0 : entries - 1),
      "-membrane_law {-membrane_law}: its modulus E_s is 0; allowed: -membrane_stretching above 0, or inextensible"},
     {!stretches && m->moment != MOMENT_QUADRATIC,
      "-membrane_moment {-membrane_moment}: a membrane that does not stretch bends alike by all of them; allowed: quadratic, or -membrane_law hooke, green or neo_hookean"},
@@ -203,7 +218,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
      "-membrane_moment {-membrane_moment}: -vesicle_bending 0 leaves bending out; allowed: quadratic, or -vesicle_bending above 0"},
     {memory > 0 && !bends,
      "-membrane_memory {-membrane_memory}: -vesicle_bending 0 bends back to no shape; allowed: 0, or -vesicle_bending above 0"},
-    {!stretches && m->viscosity > 0,
+    {!stretches && SceneLargest(&m->viscosity) > 0,
      "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
     {m->osmotic.n != 2,
      "-membrane_osmotic {-membrane_osmotic}: not two numbers; allowed: inside, outside"},

@@ -74,7 +74,7 @@ PetscReal SceneLargestRadius(Scene scene) {
 }
 
 PetscReal SceneMembraneTime(Scene scene, PetscInt v) {
-  const PetscReal c_b = scene->membrane.each[v];
+  const PetscReal c_b = scene->membrane.material[v].bending;
   return c_b > 0 ? scene->fluid.nu * PetscPowRealInt(ShapeRadius(&scene->shape, v), 3) / c_b : PETSC_MAX_REAL;
 }
 

@@ -43,19 +43,34 @@ typedef struct {
   PetscBool allow_close_markers; /* accept spacings where the tension problem is near singular */
 } SceneVesicles;
 
+/* The membrane of one vesicle. */
 typedef struct {
-  RealList stiffness;       /* c_b; one entry for all, or one a vesicle or kind */
-  PetscReal bending;        /* the largest c_b */
-  PetscReal *each;          /* [vesicles] c_b */
-  RealList viscosity_ratio; /* inside over outside; one for all, or one a vesicle or kind */
-  RealList stretching;      /* E_s, 0 of what does not stretch; one for all, or one a vesicle or kind */
-  PetscReal *modulus;       /* [vesicles] E_s */
-  PetscReal viscosity;      /* of membranes that stretch */
-  PetscReal permeability;   /* for water; 0: none */
-  RealList osmotic;         /* osmotic pressures inside and outside */
-  PetscInt law, moment;     /* LawType and MomentType of all membranes that stretch */
-  RealList memory;       /* part of the curvature at rest that bending prefers; one for all, or one a vesicle or kind */
-  PetscReal *remembered; /* [vesicles] memory */
+  LawType law;         /* LAW_INEXTENSIBLE where the modulus is 0 */
+  PetscReal bending;   /* c_b */
+  PetscReal modulus;   /* E_s (length^3/time^2); 0 of one that does not stretch */
+  PetscReal viscosity; /* (length^3/time), likewise */
+  PetscReal memory;    /* part of the curvature at rest that bending prefers */
+} Material;
+
+/* MaterialsAlike - whether two membranes are equal in all. Not collective. */
+static inline PetscBool MaterialsAlike(const Material *a, const Material *b) {
+  return a->law == b->law && a->bending == b->bending && a->modulus == b->modulus && a->viscosity == b->viscosity &&
+         a->memory == b->memory;
+}
+
+/* Lists have one entry for all vesicles, or one a vesicle or kind. */
+typedef struct {
+  RealList stiffness;            /* c_b */
+  PetscReal bending;             /* the largest c_b */
+  Material *material;            /* [vesicles] */
+  RealList viscosity_ratio;      /* inside over outside */
+  RealList stretching;           /* E_s, 0 of what does not stretch */
+  RealList viscosity;            /* of membranes that stretch */
+  PetscReal permeability;        /* for water; 0: none */
+  RealList osmotic;              /* osmotic pressures inside and outside */
+  IntList law;                   /* LawType */
+  PetscInt moment;               /* MomentType of all membranes that stretch */
+  RealList memory;               /* part of the curvature at rest that bending prefers */
   char rest[PETSC_MAX_PATH_LEN]; /* initial, circle, or a curve file */
   PetscReal *rest_X;             /* [2 shape.start[vesicles]] markers of the rest shapes, anywhere; NULL: initial */
   PetscInt derivative;           /* DerivativeType */

@@ -30,7 +30,7 @@ static PetscReal KindMarkersByShape(Scene scene, const Kind *kind) {
   const PetscReal length = kind->length, V = 4 * PETSC_PI * kind->area / PetscSqr(length),
                   thin = PetscMin(THINNEST, PetscMax(1, 0.6 / V));
   const PetscReal rate = FlowShearRate(&scene->flow) * scene->fluid.nu * PetscPowRealInt(length / (2 * PETSC_PI), 3);
-  const PetscReal strong = kind->bending > 0 && rate >= STRONG * (1 - 1e-6) * kind->bending ? 1.5 : 1;
+  const PetscReal strong = kind->material.bending > 0 && rate >= STRONG * (1 - 1e-6) * kind->material.bending ? 1.5 : 1;
   return PetscMax(45 * thin * strong, length / (2 * FluidSpecCellSize(&scene->fluid)));
 }
 
@@ -103,7 +103,7 @@ static PetscErrorCode KindFitRest(Scene scene, PetscBool spectral, Kind *kind) {
     PetscCall(CurvesFromFile(scene->comm, "-membrane_rest", file, NULL, &curves, &curve, NULL));
   const PetscReal length = CurveLength(curve);
   PetvesCheck(curves == 1, scene->comm, "-membrane_rest %s: %" PetscInt_FMT " curves; allowed: one", file, curves);
-  PetvesCheck(kind->stretching > 0 || PetscAbsReal(length / kind->length - 1) < SAME_LENGTH, scene->comm,
+  PetvesCheck(kind->material.modulus > 0 || PetscAbsReal(length / kind->length - 1) < SAME_LENGTH, scene->comm,
               "-membrane_rest %s: the curve is %g long, a membrane that does not stretch %g; allowed: the same length",
               file, (double)length, (double)kind->length);
   PetscCall(KindFitCurve(curve, length, CurveArea(curve), spectral, kind->M, &kind->rest));
@@ -122,16 +122,26 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The membrane by entry k of the lists. */
+static Material KindMaterial(Scene scene, PetscInt k) {
+  const SceneMembrane *m = &scene->membrane;
+  Material o = {.bending = ListEntry(&m->stiffness, 1, k, 0),
+                .modulus = ListEntry(&m->stretching, 1, k, 0),
+                .memory = ListEntry(&m->memory, 1, k, 0)};
+  if (o.modulus == 0) return o;
+  o.law = (LawType)m->law.v[m->law.n > 1 ? k : 0];
+  o.viscosity = ListEntry(&m->viscosity, 1, k, 0);
+  return o;
+}
+
 /* Set what defines an ellipse or a biconcave outline, of vesicle v. */
-static void KindGive(Scene scene, PetscInt v, PetscReal given[5]) {
+static void KindGive(Scene scene, PetscInt v, Kind *kind) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscBool by_area = SceneByArea(scene);
   const PetscInt k = SceneKindOf(scene, v);
-  given[0] = by_area ? own->area_scale * ListEntry(&own->area, 1, k, 0) : ListEntry(&own->axes, 2, k, 0);
-  given[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
-  given[2] = ListEntry(&scene->membrane.stiffness, 1, k, 0);
-  given[3] = ListEntry(&scene->membrane.stretching, 1, k, 0);
-  given[4] = ListEntry(&scene->membrane.memory, 1, k, 0);
+  kind->given[0] = by_area ? own->area_scale * ListEntry(&own->area, 1, k, 0) : ListEntry(&own->axes, 2, k, 0);
+  kind->given[1] = by_area ? ListEntry(&own->reduced_area, 1, k, 0) : ListEntry(&own->axes, 2, k, 1);
+  kind->material = KindMaterial(scene, k);
 }
 
 static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
@@ -141,8 +151,10 @@ static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
     Kind *next = &all->kind[all->kinds];
     const PetscReal *given = next->given;
     PetscInt k = 0;
-    KindGive(scene, v, next->given);
-    while (memcmp(all->kind[k].given, given, sizeof(next->given))) k++;
+    KindGive(scene, v, next);
+    while (memcmp(all->kind[k].given, given, sizeof(next->given)) ||
+           !MaterialsAlike(&all->kind[k].material, &next->material))
+      k++;
     all->of[v] = k;
     if (k < all->kinds) continue;
     all->kinds++;
@@ -152,15 +164,13 @@ static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
       PetscCall(EllipseAxes(given[0], given[1], next->curve.axes));
     else
       PetscCall(PetscArraycpy(next->curve.axes, given, 2));
-    next->bending = given[2];
-    next->stretching = given[3];
-    next->memory = given[4];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   const SceneVesicles *own = &scene->vesicles;
+  const SceneMembrane *m = &scene->membrane;
   Curve *curve;
   PetscFunctionBeginUser;
   PetscCall(CurvesFromFile(scene->comm, "-vesicle_file", own->file, NULL, &all->vesicles, &curve, NULL));
@@ -175,16 +185,14 @@ static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
              own->count, own->file, all->vesicles);
   PetscCall(SceneCheckList(scene, "-vesicle_center", own->center.n, 2, all->vesicles, "curves", "a curve"));
   PetscCall(SceneCheckList(scene, "-vesicle_angle", own->angle.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(
-      SceneCheckList(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-membrane_stretching", scene->membrane.stretching.n, 1, all->vesicles, "curves",
-                           "a curve"));
-  PetscCall(SceneCheckList(scene, "-membrane_memory", scene->membrane.memory.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-vesicle_bending", m->stiffness.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-membrane_law", m->law.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-membrane_stretching", m->stretching.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-membrane_viscosity", m->viscosity.n, 1, all->vesicles, "curves", "a curve"));
+  PetscCall(SceneCheckList(scene, "-membrane_memory", m->memory.n, 1, all->vesicles, "curves", "a curve"));
   for (PetscInt k = 0; k < all->kinds; k++) {
     all->of[k] = k;
-    all->kind[k].bending = ListEntry(&scene->membrane.stiffness, 1, k, 0);
-    all->kind[k].stretching = ListEntry(&scene->membrane.stretching, 1, k, 0);
-    all->kind[k].memory = ListEntry(&scene->membrane.memory, 1, k, 0);
+    all->kind[k].material = KindMaterial(scene, k);
     if (ListEntry(&own->angle, 1, k, 0) != 0) CurveCentroid(&all->kind[k].curve, all->kind[k].pivot);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -300,8 +308,8 @@ PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
     Kind *kind = &all->kind[k];
     kind->length = CurveLength(&kind->curve);
     kind->area = CurveArea(&kind->curve);
-    scene->membrane.bending = PetscMax(scene->membrane.bending, kind->bending);
-    stretching = PetscMax(stretching, kind->stretching);
+    scene->membrane.bending = PetscMax(scene->membrane.bending, kind->material.bending);
+    stretching = PetscMax(stretching, kind->material.modulus);
     scene->shape.longest = PetscMax(scene->shape.longest, kind->length);
   }
   PetscCall(FlowChoose(scene, stretching));

@@ -140,9 +140,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   PetscCall(KindsCreate(scene, &kinds));
   if (kinds.kinds) PetscCall(PetscStrncpy(shape->digest, kinds.kind[0].curve.digest, DIGEST));
   PetscCall(PetscMalloc1(kinds.vesicles, &pose));
-  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.each));
-  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.modulus));
-  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.remembered));
+  PetscCall(PetscMalloc1(kinds.vesicles, &scene->membrane.material));
   PetscCall(ScenePlace(scene, &kinds, pose));
   for (PetscInt v = 0; v < kinds.vesicles; v++)
     PetscCall(VesicleCheckRoom(scene, &kinds.kind[kinds.of[v]], &pose[v], v));
@@ -153,9 +151,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
     if (kind->rest && !scene->membrane.rest_X)
       PetscCall(PetscMalloc1(2 * shape->start[kinds.vesicles], &scene->membrane.rest_X));
     if (kind->rest) PetscCall(PetscArraycpy(scene->membrane.rest_X + 2 * shape->start[v], kind->rest, 2 * kind->M));
-    scene->membrane.each[v] = kind->bending;
-    scene->membrane.modulus[v] = kind->stretching;
-    scene->membrane.remembered[v] = kind->memory;
+    scene->membrane.material[v] = kind->material;
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
@@ -168,8 +164,6 @@ PetscErrorCode SceneDropShape(Draft scene) {
   PetscCall(ShapeDestroy(&scene->shape));
   PetscCall(PetscFree(scene->vesicles.kind));
   PetscCall(PetscFree(scene->membrane.rest_X));
-  PetscCall(PetscFree(scene->membrane.each));
-  PetscCall(PetscFree(scene->membrane.modulus));
-  PetscCall(PetscFree(scene->membrane.remembered));
+  PetscCall(PetscFree(scene->membrane.material));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

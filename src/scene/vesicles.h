@@ -7,9 +7,9 @@
 typedef struct {
   Curve curve;        /* about the origin, or where its file has it */
   PetscReal pivot[2]; /* about which it is turned: the origin, or the centroid of a file's curve */
-  PetscReal
-      given[5]; /* area and reduced area, or both semi-axes; bending stiffness, E_s, memory: not of a file's curve */
-  PetscReal length, area, bending, stretching, memory;
+  PetscReal given[2]; /* area and reduced area, or both semi-axes: not of a file's curve */
+  PetscReal length, area;
+  Material material;
   PetscInt M;      /* markers, 0 before KindFit */
   PetscReal *X;    /* [2M] */
   PetscReal *rest; /* [2M] of the shape at rest; NULL: X */
@@ -37,7 +37,7 @@ PETSC_EXTERN PetscErrorCode KindFit(Scene scene, Kind *kind);
 PETSC_EXTERN PetscErrorCode ScenePlace(Draft scene, const Kinds *kinds, Pose pose[]);
 
 /* SceneMakeShape - the initial markers of the scene's vesicles, all edges of a vesicle equal to 1e-12, and their
-   bending stiffnesses. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
+   materials. Every rank gets all of it. Collective; stops with the user's message on a bad file, spacing or
    position, and when a packing has no room. SceneDropShape - what it has made is gone, so that it can be made anew. */
 PETSC_EXTERN PetscErrorCode SceneMakeShape(Draft scene);
 PETSC_EXTERN PetscErrorCode SceneDropShape(Draft scene);

@@ -91,7 +91,7 @@ static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
     const PetscInt M = shape->start[k + 1] - shape->start[k];
     few = PetscMin(few, M);
     many = PetscMax(many, M);
-    soft = PetscMin(soft, scene->membrane.each[k]);
+    soft = PetscMin(soft, scene->membrane.material[k].bending);
     if (shape->vesicles > FEW) continue;
     PetscCall(
         PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1, M));

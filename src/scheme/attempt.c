@@ -329,12 +329,12 @@ PetscErrorCode CoupledAttempt(Scheme s, PetscReal dt) {
   PetscCall(SchemePlace(s, b.a0, d->Xstar, h->treading, end));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal aim = d->start ? 0 : b.a0; /* at edges and areas: the first ones have them */
-  if (s->membrane->viscosity > 0) {
+  if (s->membrane->viscous) {
     PetscCall(VecSet(d->P, 0));
     PetscCall(CouplingTread(s->coupling, 1, d->Xstar, d->P));
   }
   if (s->scene->scheme.length_target)
-    PetscCall(LawTarget(s->coupling->law, aim, d->Xhat, s->membrane->viscosity > 0 ? d->P : NULL, s->g));
+    PetscCall(LawTarget(s->coupling->law, aim, d->Xhat, s->membrane->viscous ? d->P : NULL, s->g));
   if (LawAimsAreas(s->coupling->law))
     PetscCall(LawTargetAreas(s->coupling->law, aim, d->Xstar, d->Xhat, s->background));
   PetscCall(TurnEdges(s, d));

@@ -320,6 +320,49 @@ def test_bending_of_stretched_membranes_on_ranks(tmp_path, moment):
     )
 
 
+APART = 4e4
+
+
+def test_laws_of_kinds(tmp_path):
+    """Four membranes that hardly feel one another, with laws, moduli and viscosities of their own, move as they do alone."""
+    laws, moduli, viscosities = ("hooke", "inextensible", "neo_hookean", "green"), (10, 0, 5, 20), (1, 0, 0.5, 0)
+
+    def run(name, of):
+        law, modulus, viscosity = (",".join(str(of_all[k]) for k in of) for of_all in (laws, moduli, viscosities))
+        options = f"-membrane_law {law} -membrane_stretching {modulus} -membrane_viscosity {viscosity}"
+        centers = ",".join(f"{APART * k!r},0" for k in range(len(of)))
+        many = f"-vesicle_count {len(of)} -vesicle_center {centers} -vesicle_angle 30 -flow_type shear"
+        return run_petves(
+            tmp_path / name,
+            f"{ELLIPSE} {many} {options} -coupled_ksp_rtol 1e-12 -scheme_order 2 -time_step 0.05 -time_end 1",
+        )
+
+    both = run("all", [0, 1, 2, 3])
+    stretching = 0.0
+    for k in range(4):
+        alone = run(str(k), [k])
+        for name in ("markers", "tension", "stretch"):
+            found = both.saved(f"vesicle/{name}", "run.h5")[-1][45 * k :][:45]
+            wanted = alone.saved(f"vesicle/{name}", "run.h5")[-1] if k != 1 or name != "stretch" else np.ones(45)
+            shift = found.mean(axis=0) - wanted.mean(axis=0) if name == "markers" else 0
+            assert found - shift == pytest.approx(wanted, abs=1e-7), name
+        for name in ("length", "area", "inclination", "frequency"):
+            assert both.series[f"{name}_{k + 1}"] == pytest.approx(alone.series[name], abs=1e-8, nan_ok=True)
+        stretching += alone.series["energy_stretching"] if k != 1 else 0
+    assert both.series["energy_stretching"] == pytest.approx(stretching, rel=1e-7) and stretching[-1] > 0.1
+
+
+def test_ranks_restart_and_laws_of_kinds(tmp_path):
+    """Vesicles of two kinds: a neo-Hookean membrane with contrast among inextensible ones."""
+    kinds = TWO.replace("-membrane_law green -membrane_viscosity .5", "-membrane_law neo_hookean,inextensible")
+    kinds = kinds.replace("-vesicle_count 2 -vesicle_center -1.2,.3,1.2,-.3", "-vesicle_count 3 -vesicle_mixture .4,.6")
+    names = ("center_x_1", "inclination_2", "length_1", "length_2", "length_3", "energy_stretching", "coupled_its")
+    options = f"{kinds} -vesicle_center -1.5,.3,0,-.8,1.5,.6 -membrane_stretching 2,0 -membrane_viscosity .5,0"
+    found = agree(tmp_path, options, 0.2, 0.4, names)
+    errors = [abs(found["whole"].series[f"length_error_{v}"]).max() for v in (1, 2, 3)]
+    assert errors[0] < 1e-7 < 1e-4 < errors[1] and errors[2] < 1e-7
+
+
 def test_ranks_restart_and_mixtures(tmp_path):
     """Two vesicles, one that stretches and one that does not, with contrast and memories of their own."""
     names = ("center_x_1", "inclination_2", "length_1", "energy_stretching", "coupled_its")

@@ -11,7 +11,7 @@ typedef struct {
   PetscBool truth;
   char name[OPTION_MAX_NAME], path[PETSC_MAX_PATH_LEN];
   RealList reals;
-  IntList ints;
+  IntList ints, words;
 } Values;
 
 static const OptionRow rows[] = {{"-t_real", OPT_REAL, offsetof(Values, real), "0.1", ">0", "a number"},
@@ -21,7 +21,8 @@ static const OptionRow rows[] = {{"-t_real", OPT_REAL, offsetof(Values, real), "
                                  {"-t_name", OPT_NAME, offsetof(Values, name), "one", "one|two", "a name"},
                                  {"-t_path", OPT_PATH, offsetof(Values, path), "", "", "a path"},
                                  {"-t_reals", OPT_REALS, offsetof(Values, reals), "1,2", "any", "numbers"},
-                                 {"-t_ints", OPT_INTS, offsetof(Values, ints), "3", "any", "integers"}};
+                                 {"-t_ints", OPT_INTS, offsetof(Values, ints), "3", "any", "integers"},
+                                 {"-t_words", OPT_INTS, offsetof(Values, words), "b,c,a,b", "a|b|c", "words"}};
 #define ROWS ((PetscInt)(sizeof(rows) / sizeof(rows[0])))
 
 static PetscBool IsTrue(const void *values) {
@@ -80,6 +81,8 @@ static void CheckTable(void) {
   TestCall(OptionsRead(PETSC_COMM_WORLD, "test", ROWS, rows, dependent, &table, &v));
   CHECK(v.real == 0.1 && v.choice == 1 && !strcmp(v.name, "one") && !*v.path && v.ints.n == 1 && v.ints.v[0] == 3,
         "defaults where nothing is given");
+  CHECK(v.words.n == 4 && v.words.v[0] == 1 && v.words.v[1] == 2 && !v.words.v[2] && v.words.v[3] == 1,
+        "a list of words is their indices");
   CHECK(v.integer == 5 && v.truth, "the user's values");
   for (PetscInt k = 0; k < v.reals.n; k++) off = PetscMax(off, PetscAbsReal(v.reals.v[k] - x[k]));
   CHECK(v.reals.n == MANY && off == 0, "a list of %d numbers, to the bit", MANY);
