@@ -32,28 +32,29 @@ static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a
   return o;
 }
 
-/* a, b = X_s, X_ss of one vesicle's X[2n] at the points. */
+/* a, b = X_s, X_ss of one vesicle's X[2n] at the points: at the markers, and then halfway to the next ones. */
 static void MomentSlopes(const Moment *o, PetscInt v, const PetscScalar X[]) {
   const Membrane m = o->membrane;
   const PetscInt n = LayoutCount(m->layout, v);
-  PetscScalar *own = m->work.bending;
   for (int power = 1; power <= 2; power++) {
-    (void)PetscArrayzero(own, 2 * n);
-    SpectralDerivative(m->spectral[v], power, PetscPowRealInt(n / m->arc[v], power), X, own);
-    TrigonometricPoints(n, own, TIMES, power == 1 ? o->a : o->b);
+    PetscReal *at = power == 1 ? o->a : o->b;
+    (void)PetscArrayzero(at, 2 * n);
+    SpectralDerivative(m->spectral[v], power, PetscPowRealInt(n / m->arc[v], power), X, at);
+    SpectralShift(m->spectral[v], 2, PETSC_PI / n, at, at + 2 * n);
   }
 }
 
 /* G += alpha times the transpose of MomentSlopes of a, b for the c_b ds of a point; the first derivative is
-   antisymmetric. */
+   antisymmetric, and the shift back is the transpose of the shift. */
 static void MomentSlopesTranspose(const Moment *o, PetscInt v, PetscReal alpha, PetscScalar G[]) {
   const Membrane m = o->membrane;
   const PetscInt n = LayoutCount(m->layout, v);
   const PetscReal size = alpha * m->bending * m->part[v] * m->ds[v] / TIMES;
-  PetscScalar *own = m->work.bending;
   for (int power = 1; power <= 2; power++) {
-    TrigonometricPointsTranspose(n, power == 1 ? o->a : o->b, TIMES, own);
-    SpectralDerivative(m->spectral[v], power, (power == 1 ? -size : size) * PetscPowRealInt(n / m->arc[v], power), own,
+    PetscReal *at = power == 1 ? o->a : o->b;
+    SpectralShift(m->spectral[v], 2, -PETSC_PI / n, at + 2 * n, at + 2 * n);
+    for (PetscInt k = 0; k < 2 * n; k++) at[k] += at[2 * n + k];
+    SpectralDerivative(m->spectral[v], power, (power == 1 ? -size : size) * PetscPowRealInt(n / m->arc[v], power), at,
                        G);
   }
 }
@@ -172,9 +173,9 @@ PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *
                          2 * m->layout->n, &o->at));
   for (PetscInt v = 0; v < m->layout->bodies && m->memory; v++) {
     const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);
-    for (PetscInt k = 0; k < n; k++) o->b[2 * k] = m->memory[first + k];
-    TrigonometricPoints(n, o->b, TIMES, o->a);
-    for (PetscInt q = 0; q < TIMES * n; q++) o->kappa0[TIMES * first + q] = o->a[2 * q];
+    PetscReal *kappa0 = o->kappa0 + TIMES * first;
+    PetscCall(PetscArraycpy(kappa0, m->memory + first, n));
+    SpectralShift(m->spectral[v], 1, PETSC_PI / n, kappa0, kappa0 + n);
   }
   *force = (Force){.name = "bending",
                    .reach = FORCE_WITHIN,

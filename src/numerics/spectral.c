@@ -2,7 +2,7 @@
 #include "numerics/circulant.h"
 #include <fftw3.h>
 
-#define TURNS 3 /* angles that a step shifts the states before it by */
+#define TURNS 5 /* angles that a step shifts by: the states before it, and bending by half an edge there and back */
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
@@ -108,28 +108,18 @@ PetscReal TrigonometricCardinal(PetscInt n, PetscReal t) {
   return PetscSinReal(0.5 * n * t) / (n * (n % 2 ? s : PetscTanReal(0.5 * t)));
 }
 
-/* X -> Y, or (back) Y -> X by the transpose. A point at the same place between every two markers has the same weights.
- */
-static void TrigonometricProduct(PetscInt n, PetscInt times, PetscBool back, PetscReal X[], PetscReal Y[]) {
+/* A point at the same place between every two markers has the same weights. */
+void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
+  for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] = 0;
   for (PetscInt between = 0; between < times; between++)
     for (PetscInt off = 0; off < n; off++) {
       const PetscReal weight = TrigonometricCardinal(n, 2 * PETSC_PI * (between + times * off) / (n * times));
       PetscReal *y = Y + 2 * between;
       for (PetscInt p = 0; p < n; p++, y += 2 * times) {
-        PetscReal *x = X + 2 * (p < off ? p - off + n : p - off);
-        for (int c = 0; c < 2; c++) *(back ? x + c : y + c) += weight * (back ? y[c] : x[c]);
+        const PetscReal *x = X + 2 * (p < off ? p - off + n : p - off);
+        for (int c = 0; c < 2; c++) y[c] += weight * x[c];
       }
     }
-}
-
-void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]) {
-  for (PetscInt q = 0; q < 2 * n * times; q++) Y[q] = 0;
-  TrigonometricProduct(n, times, PETSC_FALSE, (PetscReal *)X, Y);
-}
-
-void TrigonometricPointsTranspose(PetscInt n, const PetscReal Y[], PetscInt times, PetscReal X[]) {
-  for (PetscInt k = 0; k < 2 * n; k++) X[k] = 0;
-  TrigonometricProduct(n, times, PETSC_TRUE, X, (PetscReal *)Y);
 }
 
 /* Weights of the shift by phi = d + 2 pi m/n, |d| at most pi/n: the values at d + 2 pi j/n of the trigonometric

@@ -31,7 +31,6 @@ PETSC_EXTERN void SpectralShift(Spectral spectral, int each, PetscReal phi, cons
 
 /* TrigonometricCardinal - the trigonometric polynomial of n points that is 1 at the angle t = 0 and 0 at the other
    points. TrigonometricPoints - Y[2 times n], `times` as many points on the curve through the points X[2n].
-   TrigonometricPointsTranspose - X of the transposed matrix. Not collective. */
+   Not collective. */
 PETSC_EXTERN PetscReal TrigonometricCardinal(PetscInt n, PetscReal t);
 PETSC_EXTERN void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]);
-PETSC_EXTERN void TrigonometricPointsTranspose(PetscInt n, const PetscReal Y[], PetscInt times, PetscReal X[]);
