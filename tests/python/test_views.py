@@ -60,7 +60,7 @@ def texts(figure):
     """Return the boxes, in pixels, of the letters that are drawn, with the text."""
     from matplotlib.text import Text
 
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     renderer, found, hidden = figure.canvas.get_renderer(), {}, set()
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):

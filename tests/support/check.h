@@ -73,6 +73,15 @@ static inline void TestVecs(Vec x, ...) {
   va_end(list);
 }
 
+/* TestArray - what this rank has of a vector, to read and to write until PETSc has the vector again. */
+static inline PetscScalar *TestArray(Vec x) {
+  PetscScalar *a, *numbers;
+  TestCall(VecGetArray(x, &a));
+  numbers = a;
+  TestCall(VecRestoreArray(x, &a)); /* a is NULL then */
+  return numbers;
+}
+
 /* TestUnit - x becomes the unit vector of entry k. Collective. */
 static inline void TestUnit(PetscInt k, Vec x) {
   TestCall(VecSet(x, 0));
@@ -90,12 +99,38 @@ static inline void TestMost(PetscMPIInt n, PetscReal x[]) {
   TestCall(MPI_Allreduce(MPI_IN_PLACE, x, n, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
 }
 
-/* TestNorm - |x|. TestDot - <x, y>. TestApart - |x - y|/|y|; x is overwritten. TestRemoveMean - x less its mean.
-   Collective. */
+/* TestFar - largest |x_k - y_k| of n numbers, y NULL: |x_k|. TestProduct - SUM x_k y_k. TestAsymmetry - largest
+   |A - A^T| of a matrix [n][n]. Of this rank alone. */
+static inline PetscReal TestFar(PetscInt n, const PetscReal x[], const PetscReal y[]) {
+  PetscReal far = 0;
+  for (PetscInt k = 0; k < n; k++) far = PetscMax(far, PetscAbsReal(x[k] - (y ? y[k] : 0)));
+  return far;
+}
+
+static inline PetscReal TestProduct(PetscInt n, const PetscReal x[], const PetscReal y[]) {
+  PetscReal sum = 0;
+  for (PetscInt k = 0; k < n; k++) sum += x[k] * y[k];
+  return sum;
+}
+
+static inline PetscReal TestAsymmetry(PetscInt n, const PetscReal A[]) {
+  PetscReal most = 0;
+  for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(A[k] - A[k % n * n + k / n]));
+  return most;
+}
+
+/* TestNorm - |x|. TestTotal - SUM x_k. TestDot - <x, y>. TestApart - |x - y|/|y|; x is overwritten. TestRemoveMean - x
+   less its mean. Collective. */
 static inline PetscReal TestNorm(NormType norm, Vec x) {
   PetscReal size;
   TestCall(VecNorm(x, norm, &size));
   return size;
+}
+
+static inline PetscScalar TestTotal(Vec x) {
+  PetscScalar sum;
+  TestCall(VecSum(x, &sum));
+  return sum;
 }
 
 static inline PetscReal TestDot(Vec x, Vec y) {
@@ -110,11 +145,9 @@ static inline PetscReal TestApart(NormType norm, Vec x, Vec y) {
 }
 
 static inline void TestRemoveMean(Vec x) {
-  PetscScalar sum;
   PetscInt n;
-  TestCall(VecSum(x, &sum));
   TestCall(VecGetSize(x, &n));
-  TestCall(VecShift(x, -sum / n));
+  TestCall(VecShift(x, -TestTotal(x) / n));
 }
 
 /* TestTransposed - |<A x, y> - <x, A^T y>| over the size of the terms in the sums; 1 where a product is zero.
@@ -146,13 +179,11 @@ static inline PetscReal TestRandom(unsigned *state) {
 
 /* TestRandomVec - entry k of the vector is number k of one sequence, whatever the number of ranks. */
 static inline void TestRandomVec(unsigned seed, Vec x) {
-  PetscScalar *a;
+  PetscScalar *a = TestArray(x);
   PetscInt n, first;
   unsigned state = seed;
   TestCall(VecGetLocalSize(x, &n));
   TestCall(VecGetOwnershipRange(x, &first, NULL));
   for (PetscInt i = 0; i < first; i++) (void)TestRandom(&state);
-  TestCall(VecGetArray(x, &a));
   for (PetscInt i = 0; i < n; i++) a[i] = TestRandom(&state);
-  TestCall(VecRestoreArray(x, &a));
 }

@@ -163,28 +163,22 @@ static void Factors(const Direct *d, int side, Vec factors) {
   const PetscReal h = d->grid->h, force = side ? d->fluid->nu / (h * h) : h * h / d->fluid->nu, own = side ? 1 : force;
   const PetscReal factor[PARTS] = {
       own, own, side ? force * h : h, side ? force * h * h : h * h, 1, force, side ? force : 1, 1, 1, side ? force : 1};
-  PetscScalar *a;
-  TestCall(VecGetArrayWrite(factors, &a));
+  PetscScalar *a = TestArray(factors);
   for (int k = 0; k < PARTS; k++)
     for (PetscInt i = d->first[k]; i < d->first[k + 1]; i++) a[i] = factor[k];
-  TestCall(VecRestoreArrayWrite(factors, &a));
 }
 
 /* n numbers of a vector from `first` on. */
 static void Take(Vec from, PetscInt first, PetscInt n, PetscScalar to[]) {
-  const PetscScalar *a;
-  TestCall(VecGetArrayRead(from, &a));
+  const PetscScalar *a = TestArray(from);
   TestCall(PetscArraycpy(to, a + first, n));
-  TestCall(VecRestoreArrayRead(from, &a));
 }
 
 static void Give(const Direct *d, Vec x, int part, Vec to) {
-  PetscScalar *a;
   PetscInt n;
   TestCall(VecGetLocalSize(to, &n));
-  TestCall(VecGetArray(to, &a));
+  PetscScalar *a = TestArray(to);
   Take(x, d->first[part], n, a);
-  TestCall(VecRestoreArray(to, &a));
 }
 
 /* The near field of the forces that are known; of a contrast's motion that is known -B in k, the dipoles in f and the
@@ -194,19 +188,15 @@ static void RightHandSide(const Direct *d, const CoupledProblem *q, Vec rhs) {
   const Mobility m = d->c->mobility;
   const Layout l = d->c->membrane->layout;
   const MobilityKnown *known = &q->known;
-  const PetscScalar *G;
-  PetscScalar *k, *b;
-  TestCall(VecGetArrayRead(known->G, &G));
-  TestCall(VecGetArray(q->k, &k));
+  const PetscScalar *G = TestArray(known->G);
+  PetscScalar *k = TestArray(q->k);
   TestCall(MobilityAddLayers(m, known->F, known->G, k));
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) k[i] -= MobilityWeight(m, v) * G[i];
-  TestCall(VecRestoreArray(q->k, &k));
   if (m->contrast) TestCall(DoubleLayerSpread(m->contrast, G, known->f));
-  TestCall(VecRestoreArrayRead(known->G, &G));
   TestCall(MobilityBegin(m, known));
   TestCall(VecSet(rhs, 0));
-  TestCall(VecGetArray(rhs, &b));
+  PetscScalar *b = TestArray(rhs);
   Take(known->f->values, 0, first[FIELD_P], b);
   if (known->f->source) Take(known->f->source, 0, first[PART_SIGMA] - first[FIELD_P], b + first[FIELD_P]);
   Take(q->g, 0, V / 2, b + first[PART_SIGMA]);
@@ -215,7 +205,6 @@ static void RightHandSide(const Direct *d, const CoupledProblem *q, Vec rhs) {
   for (PetscInt v = first[PART_AREA]; v < first[PART_MEAN]; v++) b[v] = d->c->law->speed[v - first[PART_AREA]];
   for (PetscInt f = 0; f < DirectMeans(d); f++)
     b[first[PART_MEAN] + f] = known->f->mean[f] * d->grid->n[0] * d->grid->n[1];
-  TestCall(VecRestoreArray(rhs, &b));
 }
 
 /* A x = b by MUMPS and two steps of iterative refinement. Pivoting in a saddle-point matrix needs more room than MUMPS
@@ -244,7 +233,6 @@ void DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
   Direct d;
   Mat A;
   Vec b, x, rows, columns;
-  PetscScalar mean;
   Begin(c, &d);
   Assemble(&d, &A);
   TestCall(MatCreateVecs(A, &x, &b));
@@ -258,8 +246,7 @@ void DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
   TestCall(VecPointwiseMult(x, x, columns));
   Give(&d, x, FIELD_U, w);
   Give(&d, x, FIELD_P, p);
-  TestCall(VecSum(p, &mean));
-  TestCall(VecShift(p, -mean / ((PetscReal)d.grid->n[0] * d.grid->n[1])));
+  TestRemoveMean(p);
   Give(&d, x, PART_SIGMA, q->sigma);
   Give(&d, x, PART_V, q->V);
   if (q->solid) Give(&d, x, PART_SOLID, q->solid);

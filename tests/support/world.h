@@ -11,6 +11,10 @@
   "-delta_type ib6 -membrane_derivative fd -coupling_near_field none "                                                 \
   "-fluid_inertia unsteady "
 
+/* What scenes of tests have in common. */
+#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
+#define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
+
 /* TestScene - the scene of PAPER_MEMBRANE and an options text, which replaces what earlier scenes of the same program
    set. The text of this and of what else is made from one is a format, as that of printf. */
 static inline void TestSceneOf(Scene *scene, const char format[], va_list arguments) {
@@ -48,6 +52,10 @@ static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) TestMembraneCreate(TestMembrane 
   m->M = m->layout->M;
 }
 
+/* Scoped - what the end of its block destroys. */
+#define ScopedMembrane __attribute__((cleanup(TestMembraneDestroy))) TestMembrane
+#define ScopedWorld __attribute__((cleanup(TestWorldDestroy))) TestWorld
+
 static inline void TestMembraneDestroy(TestMembrane *m) {
   TestCall(MembraneDestroy(&m->membrane));
   TestCall(LayoutDestroy(&m->layout));
@@ -70,7 +78,6 @@ typedef struct {
    TestWorldBuild - with the scene's kernel and near field alone. */
 static inline void TestWorldBuildFor(const CouplingSetting *setting, TestWorld *w) {
   const Scene s = w->scene;
-  PetscScalar *x;
   w->scheme = NULL;
   w->stokes = NULL;
   TestCall(FluidCreate(&s->fluid, &w->fluid));
@@ -78,9 +85,8 @@ static inline void TestWorldBuildFor(const CouplingSetting *setting, TestWorld *
   TestCall(MembraneCreate(w->layout, s->shape.X, &s->membrane, &w->membrane));
   TestCall(CouplingCreate(w->fluid, w->membrane, NULL, setting, &w->coupling));
   TestCall(LayoutCreateVec(w->layout, 2, &w->X));
-  TestCall(VecGetArray(w->X, &x));
+  PetscScalar *x = TestArray(w->X);
   TestCall(PetscArraycpy(x, s->shape.X + 2 * w->layout->first, 2 * w->layout->n));
-  TestCall(VecRestoreArray(w->X, &x));
 }
 
 static inline void TestWorldBuild(TestWorld *w) {
@@ -116,13 +122,11 @@ static inline void TestMarkerVecs(Layout layout, PetscInt each, ...) {
    value(ctx, field, i, j), j counting the rows of all ranks. Not collective. */
 typedef PetscReal TestValue(const void *ctx, Field field, PetscInt i, PetscInt j);
 static inline void TestFill(Grid g, Field first, Field last, TestValue value, const void *ctx, Vec x) {
-  PetscScalar *a;
-  TestCall(VecGetArray(x, &a));
+  PetscScalar *a = TestArray(x);
   for (int f = first; f <= (int)last; f++)
     for (PetscInt j = 0; j < g->rows[f]; j++)
       for (PetscInt i = 0; i < g->columns[f]; i++)
         a[GridRowStart(g, (Field)f, j) + i] = value(ctx, (Field)f, i, j + g->first);
-  TestCall(VecRestoreArray(x, &a));
 }
 
 /* TestWorldPlace - the coupling at the initial markers for the time coefficient a0. */
@@ -142,8 +146,6 @@ static inline Stokes TestWorldStokes(TestWorld *w) {
  */
 static inline void TestWorldRespond(TestWorld *t, PetscBool near, Vec F, Vec U) {
   const Grid g = t->fluid->grid;
-  const PetscScalar *f;
-  PetscScalar *u;
   Vec w, p;
   TestCall(DMGetGlobalVector(g->velocity, &w));
   TestCall(DMGetGlobalVector(g->da[FIELD_P], &p));
@@ -151,11 +153,9 @@ static inline void TestWorldRespond(TestWorld *t, PetscBool near, Vec F, Vec U) 
   TestCall(MarkersSpread(t->coupling->markers, 1 / PetscSqr(g->h), F, w));
   TestCall(StokesSolve(TestWorldStokes(t), w, NULL, w, p));
   TestCall(MarkersInterpolate(t->coupling->markers, w, U));
-  TestCall(VecGetArrayRead(F, &f));
-  TestCall(VecGetArray(U, &u));
+  const PetscScalar *f = TestArray(F);
+  PetscScalar *u = TestArray(U);
   if (near) TestCall(NearFieldApply(t->coupling->mobility->near, 1, f, u));
-  TestCall(VecRestoreArray(U, &u));
-  TestCall(VecRestoreArrayRead(F, &f));
   TestCall(DMRestoreGlobalVector(g->da[FIELD_P], &p));
   TestCall(DMRestoreGlobalVector(g->velocity, &w));
 }

@@ -53,7 +53,7 @@ typedef struct {
 /* Three steps, with the spring where it is given: with or without its part of the preconditioner. */
 static void Run(const char options[], PointSpring *spring, PetscBool dense, Shown *shown) {
   const char *last;
-  TestWorld w;
+  ScopedWorld w;
   TestScene(&w.scene, "%s", options);
   TestWorldBuild(&w);
   if (spring) {
@@ -82,14 +82,11 @@ static void Run(const char options[], PointSpring *spring, PetscBool dense, Show
   for (int c = 0; c < 2; c++) shown->center[c] = shown->record.last[COLUMN_CENTER_X + c];
   if (spring) { /* the energy by hand */
     PetscReal energy = 0;
-    const PetscScalar *X;
-    TestCall(VecGetArrayRead(w.scheme->state.X, &X));
+    const PetscScalar *X = TestArray(w.scheme->state.X);
     for (PetscInt k = 0; k < 2 * w.layout->n; k++) energy += 0.5 * spring->k * PetscSqr(X[k] - spring->P[k % 2]);
-    TestCall(VecRestoreArrayRead(w.scheme->state.X, &X));
     TestSum(1, &energy);
     CHECK(PetscAbsReal(shown->energy / energy - 1) < 1e-13, "the last column is the spring's energy, %.6g", energy);
   }
-  TestWorldDestroy(&w);
 }
 
 /* Soft springs to points around the vesicle: it comes closer to the point by a way in proportion to the spring's

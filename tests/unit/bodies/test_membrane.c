@@ -27,7 +27,7 @@ static void CheckCircle(void) {
   const PetscInt M = 60;
   const PetscReal R = 0.7, half = PETSC_PI / M, omega = 0.83, edge = 2 * R * PetscSinReal(half);
   const PetscReal energy = 0.5 * 0.3 * M * edge * PetscSqr(2 * PetscSinReal(half) / edge);
-  TestMembrane m;
+  ScopedMembrane m;
   Measures got;
   PetscReal error, frequency;
   Ellipse(M, R, R, 30, &m);
@@ -57,7 +57,6 @@ static void CheckCircle(void) {
   for (PetscInt k = 0; k < M; k++) U[2 * k + 1] = 0;
   frequency = MembraneFrequency(m.membrane, 0, m.scene->shape.X, U);
   CHECK(PetscIsNanReal(frequency), "circle: no frequency where the membrane does not rotate in one sense");
-  TestMembraneDestroy(&m);
 }
 
 /* Ellipse: equal chords, points on the curve, and measures that converge with the square of the number of markers. */
@@ -67,7 +66,7 @@ static void CheckEllipse(PetscReal degrees) {
   PetscReal error[2][2], off = 0;
   for (int level = 0; level < 2; level++) {
     const PetscInt M = level ? 192 : 96;
-    TestMembrane m;
+    ScopedMembrane m;
     Measures got;
     Ellipse(M, a, b, degrees, &m);
     MembraneMeasure(m.membrane, 0, m.scene->shape.X, &got);
@@ -90,7 +89,6 @@ static void CheckEllipse(PetscReal degrees) {
     CHECK(off < 1e-14, "ellipse at %g degrees: ds is the mean chord, A0 the polygon's area, error %.1e", degrees, off);
     error[level][0] = area / got.area - 1;
     error[level][1] = length / got.length - 1;
-    TestMembraneDestroy(&m);
   }
   for (int k = 0; k < 2; k++) {
     const PetscReal order = PetscLog2Real(error[0][k] / error[1][k]);
@@ -116,7 +114,7 @@ static void CheckFile(void) {
   char path[PETSC_MAX_PATH_LEN];
   const PetscReal a = 0.5, b = 0.3;
   PetscMPIInt rank;
-  TestMembrane m;
+  ScopedMembrane m;
   Measures got;
   PetscReal off = 0;
   TestCall(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
@@ -141,33 +139,36 @@ static void CheckFile(void) {
   CHECK(m.M == 64 && off < 2e-4, "curve file: 64 markers on the ellipse, error %.1e", off);
   CHECK(got.edge_ratio - 1 < 1e-12, "curve file: equal edges, ratio - 1 = %.1e", got.edge_ratio - 1);
   CHECK(got.area > 0, "curve file: turned counter-clockwise, area %.4f", got.area);
-  TestMembraneDestroy(&m);
+}
+
+/* SUM |x_k y_k|. */
+static PetscReal Size(PetscInt n, const PetscReal x[], const PetscReal y[]) {
+  PetscReal size = 0;
+  for (PetscInt k = 0; k < n; k++) size += PetscAbsReal(x[k] * y[k]);
+  return size;
 }
 
 /* E(X + e V) - E(X - e V) = 2 e <c_b ds D4 X, V>, exactly, as the energy is quadratic; and D4 is symmetric. */
 static void CheckBending(const TestMembrane *m, unsigned *state) {
   const PetscInt n = 2 * m->M;
   const PetscReal e = 1e-2, *X = m->scene->shape.X;
-  PetscReal slope, product = 0, swapped = 0, error, size = 0;
+  PetscReal slope;
   PetscReal *F = TestReals(n), *V = TestReals(n), *W = TestReals(n);
   for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(state);
   for (PetscInt k = 0; k < n; k++) W[k] = X[k] + e * V[k];
   slope = MembraneBendingEnergy(m->membrane, 0, W);
   for (PetscInt k = 0; k < n; k++) W[k] = X[k] - e * V[k];
   slope = (slope - MembraneBendingEnergy(m->membrane, 0, W)) / (2 * e);
-  TestCall(PetscArrayzero(F, n));
   MembraneBending(m->membrane, m->membrane->bending, X, F);
-  for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
-  error = PetscAbsReal(product - slope) / size;
+  const PetscReal error = PetscAbsReal(TestProduct(n, F, V) - slope) / Size(n, F, V);
   CHECK(error < 1e-10, "bending is the gradient of the energy, error %.1e", error);
   for (PetscInt k = 0; k < n; k++) W[k] = TestRandom(state);
   TestCall(PetscArrayzero(F, n));
   MembraneBending(m->membrane, 1, W, F);
-  product = size = 0;
-  for (PetscInt k = 0; k < n; k++) product += F[k] * V[k], size += PetscAbsReal(F[k] * V[k]);
+  const PetscReal product = TestProduct(n, F, V), size = Size(n, F, V);
   TestCall(PetscArrayzero(F, n));
   MembraneBending(m->membrane, 1, V, F);
-  for (PetscInt k = 0; k < n; k++) swapped += F[k] * W[k];
+  const PetscReal swapped = TestProduct(n, F, W);
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "bending is symmetric, error %.1e",
         PetscAbsReal(product - swapped) / size);
 }
@@ -176,7 +177,7 @@ static void CheckBending(const TestMembrane *m, unsigned *state) {
 static void CheckStretching(const TestMembrane *m, unsigned *state) {
   const PetscInt n = 2 * m->M;
   const PetscReal *X = m->scene->shape.X;
-  PetscReal product = 0, swapped = 0, size = 0, error = 0, dense = 0;
+  PetscReal dense = 0;
   MembraneLaw law;
   PetscReal *F = TestReals(n), *V = TestReals(n), *sigma = TestReals(m->M), *d = TestReals(m->M),
             *D = TestReals(m->M * n);
@@ -185,21 +186,16 @@ static void CheckStretching(const TestMembrane *m, unsigned *state) {
   for (PetscInt k = 0; k < m->M; k++) sigma[k] = TestRandom(state);
   LawPlace(law, 1, X);
   LawRows(law, V, sigma, d);
-  for (PetscInt k = 0; k < m->M; k++) product += d[k] * sigma[k], size += PetscAbsReal(d[k] * sigma[k]);
   LawForce(law, 1, sigma, F);
-  for (PetscInt k = 0; k < n; k++) swapped += F[k] * V[k];
+  const PetscReal product = TestProduct(m->M, d, sigma), swapped = TestProduct(n, F, V), size = Size(m->M, d, sigma);
   CHECK(PetscAbsReal(product - swapped) < 1e-13 * size, "Dm and Dm^T adjoint, error %.1e",
         PetscAbsReal(product - swapped) / size);
   TestCall(LawBlock(law, 0, D));
-  for (PetscInt k = 0; k < m->M; k++) {
-    PetscReal row = -d[k];
-    for (PetscInt j = 0; j < n; j++) row += D[k * n + j] * V[j];
-    dense = PetscMax(dense, PetscAbsReal(row));
-  }
+  for (PetscInt k = 0; k < m->M; k++) dense = PetscMax(dense, PetscAbsReal(TestProduct(n, D + k * n, V) - d[k]));
   CHECK(dense < 1e-13, "Dm as a matrix, error %.1e", dense);
   for (PetscInt k = 0; k < m->M; k++) V[2 * k] = 3 - 2 * X[2 * k + 1], V[2 * k + 1] = 1 + 2 * X[2 * k];
   LawRows(law, V, sigma, d);
-  for (PetscInt k = 0; k < m->M; k++) error = PetscMax(error, PetscAbsReal(d[k]));
+  const PetscReal error = TestFar(m->M, d, NULL);
   CHECK(error < 1e-14, "a rigid motion stretches no edge, error %.1e", error);
   TestCall(LawDestroy(&law));
 }
@@ -225,22 +221,21 @@ static void CheckLaws(void) {
 }
 
 static void CheckOperators(void) {
-  TestMembrane m;
+  ScopedMembrane m, spectral;
   unsigned state = 5;
   Ellipse(48, 0.6, 0.25, 17, &m);
   CheckBending(&m, &state);
   CheckStretching(&m, &state);
   CheckLaws();
-  TestMembraneDestroy(&m);
-  TestMembraneCreate(&m, "-domain_box -8,8,-8,8 -domain_cells 800,800 -vesicle_semi_axes 0.6,0.25 -vesicle_angle 17 "
-                         "-vesicle_markers 63 -vesicle_bending 0.3 -vesicle_allow_close_markers "
-                         "-membrane_memory 1 -scheme_type coupled -membrane_derivative spectral");
-  CheckBending(&m, &state);
-  const PetscReal rest = MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X);
-  TestCall(PetscFree(m.membrane->memory));
-  const PetscReal plain = MembraneBendingEnergy(m.membrane, 0, m.scene->shape.X);
+  TestMembraneCreate(&spectral,
+                     "-domain_box -8,8,-8,8 -domain_cells 800,800 -vesicle_semi_axes 0.6,0.25 -vesicle_angle 17 "
+                     "-vesicle_markers 63 -vesicle_bending 0.3 -vesicle_allow_close_markers "
+                     "-membrane_memory 1 -scheme_type coupled -membrane_derivative spectral");
+  CheckBending(&spectral, &state);
+  const PetscReal rest = MembraneBendingEnergy(spectral.membrane, 0, spectral.scene->shape.X);
+  TestCall(PetscFree(spectral.membrane->memory));
+  const PetscReal plain = MembraneBendingEnergy(spectral.membrane, 0, spectral.scene->shape.X);
   CHECK(rest < 1e-6 * plain, "the remembered shape has no energy, %.1e of that without memory", rest / plain);
-  TestMembraneDestroy(&m);
 }
 
 void Facts(void) {

@@ -21,29 +21,29 @@ static const Case cases[] = {{"repulsion", "-vesicle_center 0.8,1.5,2.05,1.6", {
                              {"adhesion", "-vesicle_center 0.8,1.5,2.05,1.6", {20, 0.13, 0.3, 0.3}, PETSC_FALSE}};
 
 /* The energy of both vesicles. */
-static void FindEnergy(const Force *force, const PetscReal X[], PetscReal *energy) {
+static PetscReal EnergyOf(const Force *force, const PetscReal X[]) {
   PetscReal E[2] = {0, 0};
   TestCall(force->energy(force->context, (Instant){0}, X, E));
-  *energy = E[0] + E[1];
+  return E[0] + E[1];
 }
 
 /* Largest difference of the force from the energy's slope, over the largest force. */
 static void CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
   const PetscReal step = 1e-6;
-  PetscReal around[2], off = 0, largest = 0, sum[2] = {0, 0};
+  PetscReal around[2], off = 0, sum[2] = {0, 0};
   PetscReal *F = TestReals(2 * l->M);
   TestCall(r->law(r->context, (Instant){0}, X, F));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
     for (int side = 0; side < 2; side++) {
       X[k] = x + (side ? step : -step);
-      FindEnergy(r, X, &around[side]);
+      around[side] = EnergyOf(r, X);
     }
     X[k] = x;
     off = PetscMax(off, PetscAbsReal(F[k] + (around[1] - around[0]) / (2 * step)));
-    largest = PetscMax(largest, PetscAbsReal(F[k]));
     sum[k % 2] += F[k];
   }
+  const PetscReal largest = TestFar(2 * l->M, F, NULL);
   CHECK(largest > 0.01 && off < 1e-5 * largest, "%s: force %.3g, minus the energy's slope to %.1g", c->name, largest,
         off);
   CHECK(PetscAbsReal(sum[0]) < 1e-12 && (c->wall ? sum[1] > 0.01 : PetscAbsReal(sum[1]) < 1e-12),
@@ -52,7 +52,6 @@ static void CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
 
 /* At X*, push - K_rep X is the force; K_rep is symmetric and takes energy. */
 static void CheckSprings(const Case *c, const Force *r, Layout l, const PetscReal X[]) {
-  PetscReal off = 0, products[3] = {0, 0, 0};
   unsigned seed = 5;
   PetscReal *F = TestReals(2 * l->M), *x = TestReals(2 * l->M), *y = TestReals(2 * l->M), *Kx = TestReals(2 * l->M),
             *Ky = TestReals(2 * l->M);
@@ -60,18 +59,15 @@ static void CheckSprings(const Case *c, const Force *r, Layout l, const PetscRea
   TestCall(r->law(r->context, (Instant){0}, X, F));
   TestCall(r->known(r->context, 1, X, F));
   TestCall(r->rate(r->context, 1, X, F));
+  const PetscReal off = TestFar(2 * l->M, F, NULL);
   for (PetscInt k = 0; k < 2 * l->M; k++) {
-    off = PetscMax(off, PetscAbsReal(F[k]));
     x[k] = TestRandom(&seed);
     y[k] = TestRandom(&seed);
   }
   TestCall(r->rate(r->context, 1, x, Kx));
   TestCall(r->rate(r->context, 1, y, Ky));
-  for (PetscInt k = 0; k < 2 * l->M; k++) {
-    products[0] += x[k] * Ky[k];
-    products[1] += y[k] * Kx[k];
-    products[2] += x[k] * Kx[k];
-  }
+  const PetscReal products[] = {TestProduct(2 * l->M, x, Ky), TestProduct(2 * l->M, y, Kx),
+                                TestProduct(2 * l->M, x, Kx)};
   CHECK(((Repulsion)r->context)->count > 0 && off < 1e-12, "%s: %d springs are the law where they were found, to %.1g",
         c->name, (int)((Repulsion)r->context)->count, off);
   CHECK(PetscAbsReal(products[0] - products[1]) < 1e-12 && products[2] >= 0, "%s: K_rep is symmetric, x.K_rep x = %.3g",
@@ -81,7 +77,6 @@ static void CheckSprings(const Case *c, const Force *r, Layout l, const PetscRea
 /* With a range shorter than every film there is neither spring nor force nor energy. */
 static void CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid grid, const PetscReal X[]) {
   struct _p_Scene near = *m->scene;
-  PetscReal energy = 0, largest = 0;
   Force r;
   near.repulsion = c->law;
   near.repulsion.range = near.repulsion.band = 1e-3;
@@ -89,8 +84,7 @@ static void CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid
   PetscReal *F = TestReals(2 * m->M);
   TestCall(r.place(r.context, (Instant){0}, X));
   TestCall(r.law(r.context, (Instant){0}, X, F));
-  FindEnergy(&r, X, &energy);
-  for (PetscInt k = 0; k < 2 * m->M; k++) largest = PetscMax(largest, PetscAbsReal(F[k]));
+  const PetscReal energy = EnergyOf(&r, X), largest = TestFar(2 * m->M, F, NULL);
   CHECK(((Repulsion)r.context)->count == 0 && energy == 0 && largest == 0,
         "%s: out of range there are %d springs and no force", c->name, (int)((Repulsion)r.context)->count);
   TestCall(r.destroy(r.context));
@@ -98,7 +92,7 @@ static void CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid
 
 void Facts(void) {
   for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
-    TestMembrane m;
+    ScopedMembrane m;
     Bodies bodies;
     Force r;
     Grid grid;
@@ -116,6 +110,5 @@ void Facts(void) {
     TestCall(r.destroy(r.context));
     TestCall(BodiesDestroy(&bodies));
     TestCall(GridDestroy(&grid));
-    TestMembraneDestroy(&m);
   }
 }

@@ -15,9 +15,8 @@ static void Create(int derivative, const char axes[], PetscInt M, TestMembrane *
 /* Largest relative errors of edges and of the area against `area`. */
 static void Errors(const TestMembrane *w, const PetscScalar X[], PetscReal area, PetscReal error[2]) {
   const Membrane m = w->membrane;
-  PetscScalar *e;
+  PetscScalar *e = TestReals(2 * w->M);
   Measures measures;
-  TestCall(PetscMalloc1(2 * w->M, &e));
   MembraneMeasure(m, 0, X, &measures);
   MembraneEdges(m, 0, X, e);
   error[0] = 0;
@@ -25,14 +24,13 @@ static void Errors(const TestMembrane *w, const PetscScalar X[], PetscReal area,
     error[0] = PetscMax(error[0],
                         PetscAbsReal(PetscSqrtReal(PetscSqr(e[2 * k]) + PetscSqr(e[2 * k + 1])) / m->ds[0] - 1));
   error[1] = PetscAbsReal(measures.area / area - 1);
-  TestCall(PetscFree(e));
 }
 
 /* Random waves, and markers by themselves: edges are off by about epsilon. Afterwards all edges have their length, the
    area is the one before, and markers have not moved as a whole (a least displacement has no part that no constraint
    asks for). */
 static void CheckRestored(int derivative, PetscReal epsilon) {
-  TestMembrane w;
+  ScopedMembrane w;
   unsigned seed = 3;
   PetscReal wave[8], error[2], found, drift[2] = {0, 0};
   Measures measures;
@@ -57,7 +55,6 @@ static void CheckRestored(int derivative, PetscReal epsilon) {
         error[0], error[1]);
   CHECK(PetscAbsReal(drift[0]) + PetscAbsReal(drift[1]) < 1e-14, "%s, %.0e: the markers' mean stays, to %.1e",
         derivatives[derivative], epsilon, PetscAbsReal(drift[0]) + PetscAbsReal(drift[1]));
-  TestMembraneDestroy(&w);
 }
 
 /* Gradient of the area at the initial markers, by differences: exact, as the polygon's and the spectral curve's areas
@@ -83,9 +80,7 @@ static void AreaGradient(const TestMembrane *w, PetscReal gradient[]) {
 static void Across(const TestMembrane *w, PetscReal across[]) {
   const Membrane m = w->membrane;
   const PetscInt n = 2 * w->M;
-  PetscReal flux = 0, size = 0, largest = 0;
   PetscReal *e = TestReals(n), *normal = TestReals(n);
-  TestCall(PetscArrayzero(across, n));
   AreaGradient(w, normal);
   MembraneEdges(m, 0, w->scene->shape.X, e);
   for (PetscInt k = 0; k < n; k += 2) {
@@ -93,43 +88,36 @@ static void Across(const TestMembrane *w, PetscReal across[]) {
     for (int c = 0; c < 2; c++) e[k + c] *= lambda;
   }
   MembraneEdgesTranspose(m, 0, 1, e, across);
-  for (PetscInt k = 0; k < n; k++) {
-    flux += across[k] * normal[k];
-    size += PetscSqr(normal[k]);
-  }
-  for (PetscInt k = 0; k < n; k++) {
-    across[k] -= flux / size * normal[k];
-    largest = PetscMax(largest, PetscAbsReal(across[k]));
-  }
+  const PetscReal flux = TestProduct(n, across, normal), size = TestProduct(n, normal, normal);
+  for (PetscInt k = 0; k < n; k++) across[k] -= flux / size * normal[k];
+  const PetscReal largest = TestFar(n, across, NULL);
   for (PetscInt k = 0; k < n; k++) across[k] /= largest;
 }
 
 /* The shape found is the nearest: from X_0 + t J^T lambda, J^T lambda being across the shapes with the right edges,
    back to X_0 but for O(t^2). */
 static void CheckNearest(int derivative) {
-  TestMembrane w;
-  PetscReal *across, *X, off[2] = {0, 0};
+  ScopedMembrane w;
+  PetscReal off[2];
   Create(derivative, "0.25,0.5", 35, &w);
   const PetscReal *X0 = w.scene->shape.X, ds = w.membrane->ds[0];
   const PetscInt n = 2 * w.M;
-  TestCall(PetscMalloc2(n, &across, n, &X));
+  PetscReal *across = TestReals(n), *X = TestReals(n);
   Across(&w, across);
   for (int t = 0; t < 2; t++) {
     PetscReal found;
     for (PetscInt k = 0; k < n; k++) X[k] = X0[k] + (t ? 0.005 : 0.01) * ds * across[k];
     TestCall(MembraneRestoreEdges(w.membrane, 0, 1e-6, X, &found));
-    for (PetscInt k = 0; k < n; k++) off[t] = PetscMax(off[t], PetscAbsReal(X[k] - X0[k]));
+    off[t] = TestFar(n, X, X0);
   }
   CHECK(off[0] / off[1] > 3.6 && off[0] / off[1] < 4.4 && off[0] < 0.001 * ds,
         "%s: back to the nearest shape but for second order, %.1e and %.1e from half as far", derivatives[derivative],
         off[0], off[1]);
-  TestCall(PetscFree2(across, X));
-  TestMembraneDestroy(&w);
 }
 
 /* What is left after one, two and three steps of Newton: the square of what was left before, times a constant. */
 static void CheckQuadratic(int derivative) {
-  TestMembrane w;
+  ScopedMembrane w;
   PetscReal left[4];
   Create(derivative, "0.25,0.5", 35, &w);
   const PetscInt M = w.M;
@@ -147,14 +135,13 @@ static void CheckQuadratic(int derivative) {
   for (int k = 1; k < 3; k++)
     CHECK(left[k + 1] < 5 * PetscSqr(left[k]) + 1e-13, "%s: %.1e, after another one %.1e: %.1f times the square",
           derivatives[derivative], left[k], left[k + 1], left[k + 1] / PetscSqr(left[k]));
-  TestMembraneDestroy(&w);
 }
 
 /* Nothing moves below the tolerance, nor on a blown-up circle, whose area edges of the right length cannot enclose. */
 static void CheckNothingMoves(int derivative) {
   static const char *const axes[] = {"0.25,0.5", "0.4,0.4"};
   for (int circle = 0; circle < 2; circle++) {
-    TestMembrane w;
+    ScopedMembrane w;
     PetscReal found;
     PetscBool same;
     Create(derivative, axes[circle], 35, &w);
@@ -165,7 +152,6 @@ static void CheckNothingMoves(int derivative) {
     TestCall(PetscArraycmp(X, before, 2 * M, &same));
     CHECK(same && found == 0, "%s: %s moves nothing", derivatives[derivative],
           circle ? "a circle that is too large" : "an edge error of 9e-4");
-    TestMembraneDestroy(&w);
   }
 }
 
@@ -173,17 +159,17 @@ static void CheckNothingMoves(int derivative) {
    markers' mean stays, and of a displacement along the two gradients nothing but second order is left. Nothing moves
    where the length is off by more than the tolerance, or on a circle. */
 static void CheckLength(int derivative) {
-  TestMembrane w;
-  PetscReal *X, *before;
+  ScopedMembrane w, circle;
   Measures measures, after;
   PetscBool same;
   Create(derivative, "0.25,0.5", 35, &w);
+  Create(derivative, "0.4,0.4", 35, &circle);
   const PetscInt n = 2 * w.M;
   const PetscReal L0 = w.membrane->L0[0];
-  TestCall(PetscMalloc2(n, &X, n, &before));
+  PetscReal *X = TestReals(n), *before = TestReals(n);
   for (int size = 0; size < 3; size++) {
     const PetscReal epsilon = size == 0 ? 3e-6 : size == 1 ? 1.5e-4 : 3e-3;
-    PetscReal drift[2] = {0, 0}, moved = 0;
+    PetscReal drift[2] = {0, 0};
     for (PetscInt k = 0; k < n; k++) {
       const PetscReal t = 2 * PETSC_PI * (k / 2) / w.M;
       X[k] = before[k] = w.scene->shape.X[k] * (1 + epsilon) + epsilon * PetscCosReal(2 * t + k % 2);
@@ -191,10 +177,8 @@ static void CheckLength(int derivative) {
     MembraneMeasure(w.membrane, 0, X, &measures);
     TestCall(MembraneRestoreLength(w.membrane, 0, 1e-3, X));
     MembraneMeasure(w.membrane, 0, X, &after);
-    for (PetscInt k = 0; k < n; k++) {
-      drift[k % 2] += (X[k] - before[k]) / w.M;
-      moved = PetscMax(moved, PetscAbsReal(X[k] - before[k]));
-    }
+    for (PetscInt k = 0; k < n; k++) drift[k % 2] += (X[k] - before[k]) / w.M;
+    const PetscReal moved = TestFar(n, X, before);
     const PetscReal was = PetscAbsReal(measures.length / L0 - 1), left = PetscAbsReal(after.length / L0 - 1);
     if (size < 2)
       CHECK(was > epsilon && left < 1e-12 && PetscAbsReal(after.area / measures.area - 1) < 1e-12 && moved < 5 * was &&
@@ -203,16 +187,10 @@ static void CheckLength(int derivative) {
     else
       CHECK(was > 1e-3 && moved == 0, "%s: a length off by %.1e is left alone", derivatives[derivative], was);
   }
-  TestCall(PetscFree2(X, before));
-  TestMembraneDestroy(&w);
-  Create(derivative, "0.4,0.4", 35, &w);
-  TestCall(PetscMalloc2(n, &X, n, &before));
-  for (PetscInt k = 0; k < n; k++) X[k] = before[k] = 1.0001 * w.scene->shape.X[k];
-  TestCall(MembraneRestoreLength(w.membrane, 0, 1e-3, X));
+  for (PetscInt k = 0; k < n; k++) X[k] = before[k] = 1.0001 * circle.scene->shape.X[k];
+  TestCall(MembraneRestoreLength(circle.membrane, 0, 1e-3, X));
   TestCall(PetscArraycmp(X, before, n, &same));
   CHECK(same, "%s: a circle keeps its length, which its area gives", derivatives[derivative]);
-  TestCall(PetscFree2(X, before));
-  TestMembraneDestroy(&w);
 }
 
 void Facts(void) {

@@ -11,26 +11,22 @@ typedef struct {
    zero, as the forces of a membrane leave most rows. */
 static void RightSide(FastSolver s, unsigned seed, PetscBool gaps, Vec b) {
   const PetscInt n = s->grid->columns[s->field];
-  PetscScalar *a;
   TestRandomVec(seed, b);
-  TestCall(VecGetArray(b, &a));
+  PetscScalar *a = TestArray(b);
   for (PetscInt j = 0; j < s->grid->rows[s->field] && gaps; j += 2) TestCall(PetscArrayzero(a + j * n, n));
-  TestCall(VecRestoreArray(b, &a));
   if (s->singular) TestRemoveMean(b);
 }
 
 /* |b - A x|_2 / |b|_2; mean: of the solution, over its largest entry. */
 static PetscReal Residual(FastSolver s, PetscReal *mean) {
   Vec b, x, r;
-  PetscReal sum;
   PetscInt n;
   TestFieldVecs(s->grid->da[s->field], &b, &x, &r, NULL);
   RightSide(s, 11, PETSC_FALSE, b);
   TestCall(PCApply(s->pc, b, x));
   TestCall(MatMult(s->A, x, r));
   TestCall(VecGetSize(x, &n));
-  TestCall(VecSum(x, &sum));
-  *mean = PetscAbsReal(sum) / n / TestNorm(NORM_INFINITY, x);
+  *mean = PetscAbsReal(TestTotal(x)) / n / TestNorm(NORM_INFINITY, x);
   return TestApart(NORM_2, r, b);
 }
 

@@ -9,15 +9,13 @@ static PetscBool Within(const PetscInt range[2], PetscInt k) {
 /* The largest value outside the window. */
 static PetscReal Outside(const Forcing *f) {
   const Grid g = f->grid;
-  const PetscScalar *a;
   PetscReal largest = 0;
-  TestCall(VecGetArrayRead(f->values, &a));
+  const PetscScalar *a = TestArray(f->values);
   for (int c = 0; c < 2; c++)
     for (PetscInt j = 0; j < g->rows[c]; j++)
       for (PetscInt i = 0; i < g->columns[c]; i++)
         if (!Within(f->window.rows, j) || !Within(f->window.columns, i))
           largest = PetscMax(largest, PetscAbsReal(a[GridRowStart(g, (Field)c, j) + i]));
-  TestCall(VecRestoreArrayRead(f->values, &a));
   return largest;
 }
 
@@ -39,7 +37,7 @@ static void CheckSpread(const char name[], TestWorld *t, Vec F, Forcing *f) {
 }
 
 static void CheckCase(const char name[], const char options[]) {
-  TestWorld t;
+  ScopedWorld t;
   Forcing f, copy = {0};
   Vec F, term;
   TestWorldCreate(&t, "%s", options);
@@ -68,7 +66,6 @@ static void CheckCase(const char name[], const char options[]) {
   CheckSpread(name, &t, F, &f);
   TestCall(ForcingDestroy(&f));
   TestCall(ForcingDestroy(&copy));
-  TestWorldDestroy(&t);
 }
 
 void Facts(void) {

@@ -51,7 +51,7 @@ static void CheckDecay(const char name[], const char bc[], Exact exact, PetscRea
   const PetscInt steps = 8;
   const PetscReal dt = 0.03, nu = 0.4, h = 1.0 / 24;
   const PetscReal lambda = directions * 4 / (h * h) * PetscSqr(PetscSinReal(wave * h / 2));
-  TestWorld f;
+  ScopedWorld f;
   Vec want;
   TestRunCreate(
       &f,
@@ -68,7 +68,6 @@ static void CheckDecay(const char name[], const char bc[], Exact exact, PetscRea
   CHECK(error < 1e-12, "%s decays as backward Euler says, error %.1e", name, error);
   CHECK(pressure < 1e-12, "%s makes no pressure, %.1e", name, pressure);
   CHECK(f.scheme->report.solves == 3, "%s: 3 scalar solves a step", name);
-  TestWorldDestroy(&f);
 }
 
 /* The manufactured flow on [0, 1] x [0, 3/4]: stream function g(t) P(x) P(y), pressure q(t) Q(x) Q(y). */
@@ -135,7 +134,7 @@ static void CheckSpaceOrder(const char name[], Manufactured *m) {
   PetscReal error[3][2];
   for (int level = 0; level < 3; level++) {
     const PetscInt n = 16 << level;
-    TestWorld f;
+    ScopedWorld f;
     Vec w, p;
     const PetscReal div = RunManufactured(n, n * n / 4, m, &f);
     TestVecs(f.scheme->state.w, &w, NULL);
@@ -145,7 +144,6 @@ static void CheckSpaceOrder(const char name[], Manufactured *m) {
     error[level][0] = Distance(f.fluid->grid, f.scheme->state.w, w, PETSC_FALSE);
     error[level][1] = Distance(f.fluid->grid, f.scheme->state.p, p, PETSC_TRUE);
     CHECK(div < 1e-11, "%s, %d cells: max |div u| %.1e", name, (int)n, div);
-    TestWorldDestroy(&f);
   }
   for (int level = 1; level < 3; level++)
     for (int k = 0; k < 2; k++) {
@@ -157,16 +155,15 @@ static void CheckSpaceOrder(const char name[], Manufactured *m) {
 
 /* On one grid, against a small step. */
 static void CheckTimeOrder(const char name[], Manufactured *m) {
-  TestWorld fine;
+  ScopedWorld fine;
   PetscReal last[2] = {0, 0};
   (void)RunManufactured(32, 1280, m, &fine);
   for (int level = 0; level < 3; level++) {
     const PetscInt steps = 20 << level;
-    TestWorld f;
+    ScopedWorld f;
     (void)RunManufactured(32, steps, m, &f);
     const PetscReal error[2] = {Distance(f.fluid->grid, f.scheme->state.w, fine.scheme->state.w, PETSC_FALSE),
                                 Distance(f.fluid->grid, f.scheme->state.p, fine.scheme->state.p, PETSC_TRUE)};
-    TestWorldDestroy(&f);
     for (int k = 0; k < 2; k++) {
       const PetscReal order = level ? PetscLog2Real(last[k] / error[k]) : 1;
       last[k] = error[k];
@@ -174,7 +171,6 @@ static void CheckTimeOrder(const char name[], Manufactured *m) {
             k ? "pressure" : "velocity", order, error[k]);
     }
   }
-  TestWorldDestroy(&fine);
 }
 
 void Facts(void) {

@@ -8,8 +8,7 @@
 
 /* Largest entry of a velocity on the faces next to walls along the component, and on all the others. */
 static void WallAndInside(Grid g, Vec r, PetscReal most[2]) {
-  const PetscScalar *a;
-  TestCall(VecGetArrayRead(r, &a));
+  const PetscScalar *a = TestArray(r);
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = 0; j < g->rows[f]; j++)
       for (PetscInt i = 0; i < g->columns[f]; i++) {
@@ -18,7 +17,6 @@ static void WallAndInside(Grid g, Vec r, PetscReal most[2]) {
         const int k = g->wall[across] && (at == 0 || at == last) ? 0 : 1;
         most[k] = PetscMax(most[k], PetscAbsReal(a[GridRowStart(g, (Field)f, j) + i]));
       }
-  TestCall(VecRestoreArrayRead(r, &a));
   TestMost(2, most);
 }
 
@@ -38,14 +36,14 @@ static void FieldsCreate(Fluid f, Fields *x) {
    when it is not with). */
 static void CheckSolve(const char name[], Fluid f, Stokes stokes, PetscBool with_r_p, PetscBool project, Fields *x) {
   const PetscReal size_u = TestNorm(NORM_2, x->r_u), size_p = TestNorm(NORM_2, x->r_p);
-  PetscReal most[2] = {0, 0}, mean;
+  PetscReal most[2] = {0, 0};
   TestCall((project ? StokesProject : StokesSolve)(stokes, x->r_u, with_r_p ? x->r_p : NULL, x->u, x->p));
   TestCall(MatMult(f->H, x->u, x->left_u));
   TestCall(GridGradient(f->grid, 1, x->p, PETSC_TRUE, x->left_u));
   TestCall(VecAXPY(x->left_u, -1, x->r_u));
   TestCall(GridGradientTranspose(f->grid, 1, x->u, x->left_p));
   if (with_r_p) TestCall(VecAXPY(x->left_p, -1, x->r_p));
-  TestCall(VecSum(x->p, &mean));
+  const PetscReal mean = TestTotal(x->p);
   WallAndInside(f->grid, x->left_u, most);
   const PetscReal left_u = TestNorm(NORM_2, x->left_u), left_p = TestNorm(NORM_2, x->left_p);
   CHECK(left_p < TOLERANCE * size_p, "%s: G^T u = r_p, %.1e", name, left_p / size_p);
@@ -71,7 +69,7 @@ static void CheckInPlace(const char name[], Stokes stokes, Fields *x) {
 static void CheckBox(const char grid[], const char bc[]) {
   static const PetscReal coefficients[] = {128, 0.75, 128};
   char name[256];
-  TestWorld box;
+  ScopedWorld box;
   Fields x;
   TestWorldCreate(&box, "%s %s -vesicle_shape none -fluid_viscosity 0.7", grid, bc);
   const Fluid fluid = box.fluid;
@@ -90,7 +88,6 @@ static void CheckBox(const char grid[], const char bc[]) {
   CheckInPlace(name, stokes, &x);
   CHECK(FluidCountSolves(fluid) == before + (fluid->grid->wall[1] ? 10 : 6),
         "%s: three scalar solves each; with walls in y five, two twice and one for r_p", name);
-  TestWorldDestroy(&box);
 }
 
 void Facts(void) {

@@ -29,12 +29,10 @@ static void SolveRows(Fluid fluid, Stokes stokes, StreamRows rows, Vec r, Vec u,
   rows.ctx = &a;
   rows.force = StreamForce;
   rows.velocity = Velocity;
-  TestCall(VecGetArrayRead(r, &a.force));
-  TestCall(VecGetArray(u, &a.velocity));
+  a.force = TestArray(r);
+  a.velocity = TestArray(u);
   TestCall(GridRows(fluid->grid, FIELD_U, a.force, &a.u));
   TestCall(StreamSolve(StokesStream(stokes), &rows, measures));
-  TestCall(VecRestoreArray(u, &a.velocity));
-  TestCall(VecRestoreArrayRead(r, &a.force));
 }
 
 /* A box and vectors on its grid: a force, the Stokes solve's velocity and pressure, and the velocity by rows. */
@@ -63,24 +61,20 @@ static void OwnRows(Grid g, PetscInt first, PetscInt end, PetscInt window[2]) {
 
 /* Velocities of both fields outside local rows window[0] .. window[1] - 1 become zero. */
 static void Keep(Grid g, const PetscInt window[2], Vec w) {
-  PetscScalar *a;
-  TestCall(VecGetArray(w, &a));
+  PetscScalar *a = TestArray(w);
   for (int f = FIELD_U; f <= FIELD_V; f++)
     for (PetscInt j = 0; j < g->rows[f]; j++)
       if (j < window[0] || j >= window[1]) TestCall(PetscArrayzero(a + GridRowStart(g, (Field)f, j), g->columns[f]));
-  TestCall(VecRestoreArray(w, &a));
 }
 
 /* SUM over columns of the first (sign = 1) and of the last row of all, times `sign`. */
 static PetscReal Ends(Grid g, Field f, Vec x, PetscReal sign) {
-  const PetscScalar *a;
   PetscReal sum = 0;
-  TestCall(VecGetArrayRead(x, &a));
+  const PetscScalar *a = TestArray(x);
   for (PetscInt i = 0; i < g->columns[f]; i++) {
     if (!g->first) sum += a[i];
     if (g->rank == g->size - 1) sum += sign * a[(g->rows[f] - 1) * g->columns[f] + i];
   }
-  TestCall(VecRestoreArrayRead(x, &a));
   TestSum(1, &sum);
   return sum;
 }
@@ -90,7 +84,6 @@ static void CheckMeasures(Box *b, PetscBool squares, const StreamMeasures *m) {
   const Grid g = b->fluid->grid;
   const PetscReal norm = TestNorm(NORM_2, b->exact);
   const PetscReal slip = g->wall[0] ? 0 : Ends(g, FIELD_U, b->exact, -1); /* not measured between four walls */
-  PetscScalar all;
   if (squares)
     CHECK(PetscAbsReal(m->square - norm * norm) < TOLERANCE * norm * norm, "%s: squares %.15g for %.15g", b->options,
           m->square, (norm * norm));
@@ -98,8 +91,8 @@ static void CheckMeasures(Box *b, PetscBool squares, const StreamMeasures *m) {
   CHECK(PetscAbsReal(m->slip * g->n[0] - slip) < 10 * TOLERANCE * norm, "%s: slip %g for %g", b->options, m->slip,
         (slip / g->n[0]));
   if (!g->wall[1]) return;
-  TestCall(VecSum(b->p, &all));
-  const PetscReal pressure = 0.5 * Ends(g, FIELD_P, b->p, 1) / g->n[0] - all / ((PetscReal)g->n[0] * g->n[1]);
+  const PetscReal pressure = 0.5 * Ends(g, FIELD_P, b->p, 1) / g->n[0] -
+                             TestTotal(b->p) / ((PetscReal)g->n[0] * g->n[1]);
   CHECK(PetscAbsReal(m->pressure - pressure) < TOLERANCE * TestNorm(NORM_INFINITY, b->p), "%s: pressure %g for %g",
         b->options, m->pressure, pressure);
 }
@@ -107,12 +100,10 @@ static void CheckMeasures(Box *b, PetscBool squares, const StreamMeasures *m) {
 /* A channel without flux has a uniform pressure gradient, which is not in p. */
 static void RemoveMeanU(Grid g, Vec w) {
   const PetscInt n = GridLocalU(g);
-  PetscScalar *a, sum = 0;
-  TestCall(VecGetArray(w, &a));
+  PetscScalar *a = TestArray(w), sum = 0;
   for (PetscInt k = 0; k < n; k++) sum += a[k];
   TestSum(1, &sum);
   for (PetscInt k = 0; k < n; k++) a[k] -= sum / ((PetscReal)g->n[0] * g->n[1]);
-  TestCall(VecRestoreArray(w, &a));
 }
 
 /* The velocity and the pressure of the force b->r, by the equations that they obey: H u + G p = r but for a uniform

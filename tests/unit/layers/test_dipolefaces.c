@@ -38,8 +38,8 @@ static void Place(const Case *a, PetscInt k, PaddedStencil response[2], PaddedSt
 static void Compare(const OffsetTable lattice[2], const Case *a) {
   const PetscReal scale = 2.5;
   PaddedStencil response[2 * MARKERS], dipole[MARKERS][DIPOLE_COUNT];
-  PetscReal answer[4][MARKERS], *const free[4] = {answer[0], answer[1], answer[2], answer[3]}, worst = 0, most = 0,
-                                       X[2];
+  PetscReal answer[4][MARKERS], *const free[4] = {answer[0], answer[1], answer[2], answer[3]};
+  PetscReal worst = 0, most = 0, X[2];
   DipoleFaces faces;
   for (PetscInt k = 0; k < MARKERS; k++) Place(a, k, &response[2 * k], dipole[k], X);
   TestCall(DipoleFacesCreate(MARKERS, response, &faces));

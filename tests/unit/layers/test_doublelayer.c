@@ -4,17 +4,13 @@
 #include "problem/contrast.h"
 #include "numerics/blas.h"
 #include "layers/curvelayer.h"
+#include "layers/stencilsums.h"
 
 #define SCENE                                                                                                          \
   "-delta_type cbs54 -coupling_near_field exact -coupling_box_part false -membrane_derivative spectral "               \
   "-scheme_type coupled -fluid_inertia none -domain_box -2,2,-2,2 -domain_cells 64,64 -vesicle_area 1 "                \
   "-vesicle_reduced_area .7 -vesicle_center .013,.021 -vesicle_angle 20 "
 #define CHANNEL SCENE "-domain_bc_x periodic -domain_bc_y wall "
-#define PERIODIC SCENE "-domain_bc_x periodic -domain_bc_y periodic "
-
-static PetscReal Entry(const OffsetTable *t, DipolePart b, PetscInt i, PetscInt j) {
-  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
-}
 
 /* Known values; the divergence is 1/2 in the dipole's own cell, none elsewhere nor of xy. Of xy, whose entry is the
    upper right corner of a cell, the four cells around it are those with offsets 0 and 1. */
@@ -25,13 +21,13 @@ static void CheckTables(void) {
   const char *const name[] = {"xx", "yy", "xy"};
   for (int k = 0; k < DIPOLE_COUNT; k++) {
     const DipolePart part = (DipolePart)k;
-    const PetscReal off = Entry(&t[0], part, 0, part == DIPOLE_XY) - known[k];
+    const PetscReal off = OffsetAt(&t[0], part, 0, part == DIPOLE_XY) - known[k];
     PetscReal most = 0;
     CHECK(PetscAbsReal(off) < 1e-14, "%s: the velocity next to the dipole is off by %.0e", name[k], off);
     for (PetscInt j = -38; j <= 38; j++)
       for (PetscInt i = -38; i <= 38; i++) {
-        const PetscReal div = Entry(&t[0], part, i, j) - Entry(&t[0], part, i - 1, j) + Entry(&t[1], part, i, j) -
-                              Entry(&t[1], part, i, j - 1);
+        const PetscReal div = OffsetAt(&t[0], part, i, j) - OffsetAt(&t[0], part, i - 1, j) +
+                              OffsetAt(&t[1], part, i, j) - OffsetAt(&t[1], part, i, j - 1);
         most = PetscMax(most, PetscAbsReal(div - (part != DIPOLE_XY && !i && !j ? 0.5 : 0)));
       }
     CHECK(most < 2e-14, "%s: a divergence of 1/2 in the own cell, of xy none, elsewhere none: %.0e", name[k], most);
@@ -84,47 +80,39 @@ static void Create(const char options[], Double *d) {
 }
 
 static void AddConstant(Vec w, PetscInt first, const PetscReal mean[2]) {
-  PetscScalar *a;
   PetscInt n;
   TestCall(VecGetLocalSize(w, &n));
-  TestCall(VecGetArray(w, &a));
+  PetscScalar *a = TestArray(w);
   for (PetscInt k = 0; k < n; k++) a[k] += mean[k >= first];
-  TestCall(VecRestoreArray(w, &a));
 }
 
 /* V = E v + C_D U, the double layer of the motion U. */
 static void Respond(Double *d) {
   const Coupling c = d->world.coupling;
   const Grid g = d->world.fluid->grid;
-  const PetscScalar *u;
-  PetscScalar *v;
   Forcing f = {.values = d->r, .source = d->p};
   TestCall(VecSet(d->r, 0));
   TestCall(VecSet(d->p, 0));
-  TestCall(VecGetArrayRead(d->U, &u));
+  const PetscScalar *u = TestArray(d->U);
   TestCall(DoubleLayerSpread(c->mobility->contrast, u, &f));
   TestCall(StokesSolve(TestWorldStokes(&d->world), d->r, d->p, d->w, d->p));
   if (!g->wall[1]) AddConstant(d->w, GridLocalU(g), f.mean);
   TestCall(MarkersInterpolate(c->markers, d->w, d->V));
-  TestCall(VecGetArray(d->V, &v));
+  PetscScalar *v = TestArray(d->V);
   TestCall(DoubleLayerApply(c->mobility->contrast, 1, u, v));
-  TestCall(VecRestoreArray(d->V, &v));
-  TestCall(VecRestoreArrayRead(d->U, &u));
 }
 
 /* U of marker k: e_x, e_y, a turn, or along the curve. */
 static void SetMotion(Double *d, int which) {
   const DoubleLayer s = d->world.coupling->mobility->contrast;
   const Layout l = d->world.layout;
-  PetscScalar *u;
-  TestCall(VecGetArray(d->U, &u));
+  PetscScalar *u = TestArray(d->U);
   for (PetscInt k = 0; k < l->n; k++) {
     const PetscReal *X = d->world.coupling->markers->X + 2 * (l->first + k), *N = s->normal + 2 * (l->first + k);
     const PetscReal motion[4][2] = {
         {1, 0}, {0, 1}, {-X[1], X[0]}, {-N[1] / s->along[l->first + k], N[0] / s->along[l->first + k]}};
     for (int c = 0; c < 2; c++) u[2 * k + c] = motion[which][c];
   }
-  TestCall(VecRestoreArray(d->U, &u));
 }
 
 /* D R = -R/2 for rigid motions. */
@@ -140,7 +128,6 @@ static void CheckRigid(const char name[], PetscReal bound, Double *d) {
 
 /* Rigid motions; and a motion along the curve sends no flux through it. */
 static void CheckMotions(const char name[], const char options[]) {
-  PetscReal flux = 0;
   Double d;
   Create(options, &d);
   CheckRigid(name, 1e-6, &d);
@@ -148,8 +135,8 @@ static void CheckMotions(const char name[], const char options[]) {
   Respond(&d);
   PetscReal *V = TestReals(2 * d.world.layout->M);
   TestCall(LayoutGatherVec(d.world.layout, d.V, V));
-  for (PetscInt k = 0; k < 2 * d.world.layout->M; k++) flux += d.world.coupling->mobility->contrast->normal[k] * V[k];
-  flux /= d.world.coupling->mobility->contrast->length[0];
+  const DoubleLayer s = d.world.coupling->mobility->contrast;
+  const PetscReal flux = TestProduct(2 * d.world.layout->M, s->normal, V) / s->length[0];
   CHECK(PetscAbsReal(flux) < 1e-9, "%s: no flux of a motion along the curve, speed 1, a length: %.1e", name, flux);
   TestWorldDestroy(&d.world);
 }
@@ -215,10 +202,10 @@ static void ForcesOf(const Double *d, PetscReal ratio, const PetscReal D[], cons
                      const PetscReal U[], PetscReal F[]) {
   const PetscReal *normal = d->world.coupling->mobility->contrast->normal;
   const PetscInt n = 2 * d->world.layout->M, size = n + 1;
-  PetscReal *A;
+  PetscReal *A = TestReals(size * size);
   PetscBLASInt *pivot;
   PetscBool factored;
-  TestCall(PetscCalloc2(size * size, &A, size, &pivot));
+  TestCall(PetscCalloc1(size, &pivot));
   for (PetscInt k = 0; k < n; k++) {
     TestCall(PetscArraycpy(A + k * size, S + k * n, n));
     A[k * size + n] = A[n * size + k] = normal[k];
@@ -231,7 +218,7 @@ static void ForcesOf(const Double *d, PetscReal ratio, const PetscReal D[], cons
   TestCall(DenseFactor(size, A, pivot, &factored));
   CHECK(factored, "the forces of a motion, ratio %g", ratio);
   TestCall(DenseSolve(size, A, pivot, PETSC_FALSE, m, F));
-  TestCall(PetscFree2(A, pivot));
+  TestCall(PetscFree(pivot));
 }
 
 /* The dissipation U . F of every motion U that stretches no edge and keeps the area is positive: the least eigenvalue
@@ -305,7 +292,7 @@ void Facts(void) {
   CheckCurve();
   CheckTables();
   CheckMotions("channel", CHANNEL "-vesicle_markers 69");
-  CheckMotions("periodic both ways", PERIODIC "-vesicle_markers 69");
+  CheckMotions("periodic both ways", SCENE PERIODIC "-vesicle_markers 69");
   CheckHalfTable();
   CheckAtWall("bottom wall", CHANNEL "-vesicle_markers 69 -vesicle_center .013,-1.435 ", 4e-6);
   CheckAtWall("top wall", CHANNEL "-vesicle_markers 69 -vesicle_center .013,1.5 ", 4e-4);

@@ -4,30 +4,25 @@
 #include "base/lanes.h"
 #include "layers/latticegreen.h"
 #include "layers/layercells.h"
-#include "fluid/stokes/stokes.h"
+#include "layers/stencilsums.h"
 
-#define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
-#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
 #define RADIUS 0.5
-
-static PetscReal Entry(const OffsetTable *t, OffsetBlock b, PetscInt i, PetscInt j) {
-  return t->value[b][(j + t->size[1]) * (2 * t->size[0] + 1) + i + t->size[0]];
-}
 
 /* Its Laplacian is the divergence of the force, and far away it is x/(2 pi r^2). */
 static void CheckTable(const OffsetTable *t) {
   PetscReal worst = 0, far = 0;
   for (PetscInt j = -19; j <= 19; j++)
     for (PetscInt i = -19; i <= 19; i++) {
-      const PetscReal laplacian = Entry(t, OFFSET_UU, i + 1, j) + Entry(t, OFFSET_UU, i - 1, j) +
-                                  Entry(t, OFFSET_UU, i, j + 1) + Entry(t, OFFSET_UU, i, j - 1) -
-                                  4 * Entry(t, OFFSET_UU, i, j);
+      const PetscReal laplacian = OffsetAt(t, OFFSET_UU, i + 1, j) + OffsetAt(t, OFFSET_UU, i - 1, j) +
+                                  OffsetAt(t, OFFSET_UU, i, j + 1) + OffsetAt(t, OFFSET_UU, i, j - 1) -
+                                  4 * OffsetAt(t, OFFSET_UU, i, j);
       const PetscReal divergence = j ? 0 : (i == 0) - (i == 1); /* the face lies between cells 0 and 1 */
       const PetscReal x = i - 0.5, r2 = x * x + j * j;
       worst = PetscMax(worst, PetscAbsReal(laplacian - divergence));
-      worst = PetscMax(worst, PetscAbsReal(Entry(t, OFFSET_VV, j, i) - Entry(t, OFFSET_UU, i, j)));
+      worst = PetscMax(worst, PetscAbsReal(OffsetAt(t, OFFSET_VV, j, i) - OffsetAt(t, OFFSET_UU, i, j)));
       if (r2 > 100)
-        far = PetscMax(far, PetscAbsReal(Entry(t, OFFSET_UU, i, j) - x / (2 * PETSC_PI * r2)) * r2 * PetscSqrtReal(r2));
+        far = PetscMax(far,
+                       PetscAbsReal(OffsetAt(t, OFFSET_UU, i, j) - x / (2 * PETSC_PI * r2)) * r2 * PetscSqrtReal(r2));
     }
   CHECK(worst < 1e-13, "the pressure's Laplacian is the force's divergence: off by %.1e", worst);
   CHECK(far < 0.1, "far away it is x/(2 pi r^2), but for %.3f/r^3", far);
@@ -49,37 +44,29 @@ static void CheckLogarithm(void) {
 static void CheckAgainstGrid(const OffsetTable *t) {
   const PetscInt at[2] = {64, 64}, apart = 64;
   PetscReal worst = 0;
-  PetscScalar *a;
-  TestWorld w;
-  Stokes stokes;
+  ScopedWorld w;
   Vec f, u, p;
   TestWorldCreate(&w, EXACT PERIODIC "-vesicle_shape none -scheme_type coupled -scheme_order 2 -delta_type cbs54 "
                                      "-domain_box 0,256,0,256 -domain_cells 256,256 -fluid_inertia none");
   const Grid g = w.fluid->grid;
-  TestCall(StokesCreate(w.fluid, &stokes));
   TestFieldVecs(g->velocity, &f, &u, NULL);
   TestFieldVecs(g->da[FIELD_P], &p, NULL);
-  TestCall(VecGetArray(f, &a));
   for (int k = 0; k < 2; k++) {
     const PetscInt row = at[1] + k * 2 * apart - g->first, column = at[0] + k * 2 * apart;
     if (row < 0 || row >= g->rows[FIELD_P]) continue;
-    a[row * g->n[0] + column] = k ? -1 : 1;
-    a[GridLocalU(g) + row * g->n[0] + column] = k ? -2 : 2;
+    TestArray(f)[row * g->n[0] + column] = k ? -1 : 1;
+    TestArray(f)[GridLocalU(g) + row * g->n[0] + column] = k ? -2 : 2;
   }
-  TestCall(VecRestoreArray(f, &a));
-  TestCall(StokesSolve(stokes, f, NULL, u, p));
-  TestCall(VecGetArray(p, &a));
+  TestCall(StokesSolve(TestWorldStokes(&w), f, NULL, u, p));
+  const PetscScalar *a = TestArray(p);
   for (PetscInt j = -6; j <= 6; j++)
     for (PetscInt i = -6; i <= 6; i++) {
       const PetscInt row = at[1] + j - g->first;
       if (row < 0 || row >= g->rows[FIELD_P]) continue;
-      worst = PetscMax(worst, PetscAbsReal(a[row * g->n[0] + at[0] + i] - Entry(t, OFFSET_UU, i, j) -
-                                           2 * Entry(t, OFFSET_VV, i, j)));
+      worst = PetscMax(worst, PetscAbsReal(a[row * g->n[0] + at[0] + i] - OffsetAt(t, OFFSET_UU, i, j) -
+                                           2 * OffsetAt(t, OFFSET_VV, i, j)));
     }
-  TestCall(VecRestoreArray(p, &a));
   CHECK(worst < 1e-5, "the Stokes solve's pressure next to a force, its images 256 h away: %.1e", worst);
-  TestCall(StokesDestroy(&stokes));
-  TestWorldDestroy(&w);
 }
 
 /* Largest difference of the pressure from 1/RADIUS inside and from zero outside, its mean outside taken off. */
@@ -97,68 +84,52 @@ static void JumpError(Grid g, const PetscReal center[2], const PetscReal p[], Pe
         sum[1]++;
       }
     }
-    TestCall(MPI_Allreduce(MPI_IN_PLACE, sum, round ? 0 : 2, MPIU_REAL, MPI_SUM, g->comm));
+    TestSum(round ? 0 : 2, sum);
   }
   TestMost(1, error);
 }
 
 /* u at cell centres of a periodic grid. */
 static void FaceMeans(Grid g, Vec w, PetscReal u[]) {
-  const PetscScalar *a;
-  TestCall(VecGetArrayRead(w, &a));
+  const PetscScalar *a = TestArray(w);
   for (PetscInt k = 0; k < g->n[0] * g->rows[FIELD_P]; k++)
     u[k] = 0.5 * (a[k] + a[k % g->n[0] ? k - 1 : k - 1 + g->n[0]]);
-  TestCall(VecRestoreArrayRead(w, &a));
-}
-
-static PetscReal Largest(PetscInt n, const PetscReal x[]) {
-  PetscReal largest = 0;
-  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsReal(x[k]));
-  return largest;
 }
 
 /* The circle with tension 1, at the time coefficient a0 (0: any, quasi-steady). */
 static void CheckCircle(const char options[], PetscReal a0) {
   const PetscReal center[2] = {0.013, -0.021};
-  PetscReal before, after, speed[2] = {0, 0}, *cells[2];
-  const PetscScalar *a;
-  TestWorld w;
-  Stokes stokes;
+  PetscReal before, after, speed[2] = {0, 0};
+  ScopedWorld w;
   Vec f, u, p, sigma, F;
   TestWorldCreate(&w, "%s", options);
   if (a0 > 0) TestWorldPlace(a0, &w);
   const Grid g = w.fluid->grid;
   const PetscInt n = g->n[0] * g->rows[FIELD_P];
-  TestCall(StokesCreate(w.fluid, &stokes));
+  PetscReal *cells[2] = {TestReals(n), TestReals(n)};
   TestFieldVecs(g->velocity, &f, &u, NULL);
   TestFieldVecs(g->da[FIELD_P], &p, NULL);
   TestMarkerVecs(w.layout, 1, &sigma, NULL);
+  TestVecs(w.X, &F, NULL);
   TestCall(VecSet(sigma, 1));
   TestCall(CouplingSpreadTension(w.coupling, -1, sigma, f));
-  TestCall(StokesSolve(stokes, f, NULL, u, p));
-  TestCall(PetscCalloc2(n, &cells[0], n, &cells[1]));
-  TestCall(VecGetArrayRead(p, &a));
+  TestCall(StokesSolve(TestWorldStokes(&w), f, NULL, u, p));
+  const PetscScalar *a = TestArray(p);
   JumpError(g, center, a, &before);
   TestCall(PetscArraycpy(cells[0], a, n));
-  TestCall(VecRestoreArrayRead(p, &a));
   FaceMeans(g, u, cells[1]);
-  speed[0] = Largest(n, cells[1]);
-  TestCall(VecDuplicate(w.X, &F));
+  speed[0] = TestFar(n, cells[1], NULL);
   TestCall(CouplingForces(w.coupling, (Instant){0}, sigma, w.X, F));
   TestCall(SingleCellsCorrect(&w.coupling->mobility->near->set, &w.coupling->mobility->near->lattice, w.layout, F, w.X,
                               (PetscReal *[]){cells[1], NULL, cells[0]}));
-  TestCall(VecDestroy(&F));
   JumpError(g, center, cells[0], &after);
-  speed[1] = Largest(n, cells[1]);
+  speed[1] = TestFar(n, cells[1], NULL);
   TestMost(2, speed);
   CHECK(before > 0.1 / RADIUS && after < 0.01 / RADIUS,
         "%s: pressure over a circle under tension, a0 = %g: off by %.2g of the jump, corrected by %.1e",
         w.scene->coupling.kernel, a0, before * RADIUS, after * RADIUS);
   CHECK(speed[1] < 3e-4, "where nothing moves: velocity %.1e of tension over viscosity, corrected %.1e", speed[0],
         speed[1]);
-  TestCall(PetscFree2(cells[0], cells[1]));
-  TestCall(StokesDestroy(&stokes));
-  TestWorldDestroy(&w);
 }
 
 #define CIRCLE                                                                                                         \

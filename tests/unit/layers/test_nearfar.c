@@ -2,8 +2,7 @@
 #include "facts.h"
 #include "layers/nearblock.h"
 
-#define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
-#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic -fluid_inertia none "
+#define SCENE EXACT PERIODIC "-fluid_inertia none -scheme_type coupled -delta_type %s "
 
 /* What the response tends to: the Stokeslet at the offset (x, y), nu = 1. */
 static PetscReal Stokeslet(int source, int response, PetscReal x, PetscReal y) {
@@ -49,10 +48,10 @@ static void BySums(const OffsetTable *t, const NearField f, PetscInt i, PetscInt
    vesicles. */
 static void CheckClosedForm(const OffsetTable *t, const char kernel[], const char scene[], PetscReal near,
                             PetscReal bound) {
-  TestWorld w;
+  ScopedWorld w;
   PetscReal worst[2] = {0, 0}, C[4];
   PetscInt pairs = 0;
-  TestWorldCreate(&w, EXACT PERIODIC "-scheme_type coupled -delta_type %s %s", kernel, scene);
+  TestWorldCreate(&w, SCENE "%s", kernel, scene);
   const NearField f = w.coupling->mobility->near;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X, ring = f->pairs->kernel->reach[NEAR_TWO] + 2;
   const Layout l = w.layout;
@@ -75,17 +74,16 @@ static void CheckClosedForm(const OffsetTable *t, const char kernel[], const cha
   CHECK(worst[0] < near && (worst[0] > 1e-13) == (near > 1e-12) && worst[1] < bound && pairs > 100,
         "%s, %d vesicles: closed form of %d pairs %g h apart within %.4f h^4/(nu r^4), bound %g; nearer ones to %.1e",
         kernel, (int)l->bodies, (int)pairs, ring, worst[1], bound, worst[0]);
-  TestWorldDestroy(&w);
 }
 
 #define LARGE "-domain_cells 128,128 -domain_box 0,4,0,4 -vesicle_semi_axes 0.45,1.2 -vesicle_markers 111 "
 /* Pairs of one vesicle, 77 h long, beyond the reach of sums: the closed form of three orders with the place in the
    cells, and the vesicle's own quadrature; nearer ones are such sums. */
 static void CheckWithin(const OffsetTable *t, const char kernel[], const char place[], PetscReal bound) {
-  TestWorld w;
+  ScopedWorld w;
   PetscReal worst[2] = {0, 0}, C[4];
   PetscInt pairs = 0;
-  TestWorldCreate(&w, EXACT PERIODIC "-scheme_type coupled -delta_type %s " LARGE "%s", kernel, place);
+  TestWorldCreate(&w, SCENE LARGE "%s", kernel, place);
   const NearField f = w.coupling->mobility->near;
   const PetscInt M = w.layout->M;
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
@@ -109,7 +107,6 @@ static void CheckWithin(const OffsetTable *t, const char kernel[], const char pl
   CHECK(worst[0] < 1e-12 && worst[1] < bound && pairs > 4000,
         "%s, one vesicle, %s: closed form of %d pairs beyond %g h within %.2e/nu, bound %g; nearer ones to %.1e",
         kernel, place, (int)pairs, f->pairs->kernel->reach[NEAR_ONE], worst[1], bound, worst[0]);
-  TestWorldDestroy(&w);
 }
 
 void Facts(void) {

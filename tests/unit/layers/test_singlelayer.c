@@ -32,17 +32,13 @@ static void CircleCreate(const char kernel[], PetscReal turn, const PetscReal ce
 
 /* x += factor e^{i (k theta + phase)} at the own markers. */
 static void AddMode(Circle *c, int k, PetscReal factor, PetscReal phase, Vec x) {
-  const PetscScalar *X;
-  PetscScalar *a;
-  TestCall(VecGetArrayRead(c->w.X, &X));
-  TestCall(VecGetArray(x, &a));
+  const PetscScalar *X = TestArray(c->w.X);
+  PetscScalar *a = TestArray(x);
   for (PetscInt j = 0; j < c->w.layout->n; j++) {
     const PetscReal theta = atan2(X[2 * j + 1] - c->center[1], X[2 * j] - c->center[0]);
     a[2 * j] += factor * PetscCosReal(k * theta + phase);
     a[2 * j + 1] += factor * PetscSinReal(k * theta + phase);
   }
-  TestCall(VecRestoreArray(x, &a));
-  TestCall(VecRestoreArrayRead(c->w.X, &X));
 }
 
 /* Coefficient of e^{i k theta} in x, on every rank. */

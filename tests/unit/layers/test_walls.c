@@ -20,21 +20,18 @@ static void CreateAtWall(PetscInt cells, PetscInt markers, PetscReal gap, int si
 
 /* The velocity, [2 markers] on every rank, of a smooth force in a channel of cells^2. */
 static void SmoothVelocity(PetscInt cells, PetscInt markers, PetscReal gap, PetscReal U[]) {
-  TestWorld t;
+  ScopedWorld t;
   Vec F, velocity;
-  PetscScalar *f;
   CreateAtWall(cells, markers, gap, 0, "-domain_bc_x periodic -fluid_inertia none", &t);
   TestVecs(t.X, &F, &velocity, NULL);
-  TestCall(VecGetArray(F, &f));
+  PetscScalar *f = TestArray(F);
   for (PetscInt k = 0; k < t.layout->n; k++) {
     const PetscReal a = 2 * PETSC_PI * k / markers;
     f[2 * k] = (PetscCosReal(2 * a) + 0.3 * PetscSinReal(3 * a) - 0.4 * PetscSinReal(a)) / markers;
     f[2 * k + 1] = (0.7 * PetscSinReal(2 * a) + 0.5 * PetscCosReal(3 * a) + 0.2 * PetscCosReal(a)) / markers;
   }
-  TestCall(VecRestoreArray(F, &f));
   TestWorldRespond(&t, PETSC_TRUE, F, velocity);
   TestCall(LayoutGatherVec(t.layout, velocity, U));
-  TestWorldDestroy(&t);
 }
 
 /* 48^2 against 192^2, where every gap is four times as many cells: what is left is the grid's own error, of second
@@ -60,15 +57,14 @@ static void CheckVelocity(void) {
 static PetscBool IsPositive(TestWorld *t, PetscReal level, PetscReal Mob[]) {
   const PetscInt M = t->layout->M, N = 2 * M;
   const PetscReal *X = t->coupling->markers->X;
-  PetscReal *normal = TestReals(N), *eigenvalue = TestReals(N), norm = 0;
+  PetscReal *normal = TestReals(N), *eigenvalue = TestReals(N);
   for (PetscInt k = 0; k < M; k++) {
     const PetscInt a = (k + 1) % M, b = (k + M - 1) % M;
     normal[2 * k] = X[2 * a + 1] - X[2 * b + 1];
     normal[2 * k + 1] = X[2 * b] - X[2 * a];
   }
-  for (PetscInt k = 0; k < N; k++) norm += PetscSqr(normal[k]);
-  for (PetscInt j = 0; j < N; j++)
-    for (PetscInt i = 0; i < N; i++) Mob[j * N + i] += level * normal[i] * normal[j] / norm;
+  const PetscReal norm = TestProduct(N, normal, normal);
+  for (PetscInt k = 0; k < N * N; k++) Mob[k] += level * normal[k % N] * normal[k / N] / norm;
   TestCall(DenseEigen(N, Mob, eigenvalue));
   return eigenvalue[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -77,13 +73,12 @@ static PetscBool IsPositive(TestWorld *t, PetscReal level, PetscReal Mob[]) {
    leak along the normals: what takes that off, .05 along them, leaves no other negative direction. */
 static void CheckPositive(PetscReal coefficient, PetscInt markers, PetscReal gap) {
   const PetscInt N = 2 * markers;
-  TestWorld t;
+  ScopedWorld t;
   Vec F, U;
-  PetscReal *Mob = TestReals(N * N), asymmetry = 0, largest = 0;
-  CreateAtWall(48, markers, gap, 1,
-               coefficient > 0 ? "-domain_bc_x periodic -fluid_inertia unsteady"
-                               : "-domain_bc_x periodic -fluid_inertia none",
-               &t);
+  PetscReal *Mob = TestReals(N * N);
+  const char *options[] = {"-domain_bc_x periodic -fluid_inertia none",
+                           "-domain_bc_x periodic -fluid_inertia unsteady"};
+  CreateAtWall(48, markers, gap, 1, options[coefficient > 0], &t);
   if (coefficient > 0) TestCall(FluidSetTimeCoefficient(t.fluid, coefficient / (H * H)));
   TestVecs(t.X, &F, &U, NULL);
   for (PetscInt j = 0; j < N; j++) {
@@ -91,22 +86,17 @@ static void CheckPositive(PetscReal coefficient, PetscInt markers, PetscReal gap
     TestWorldRespond(&t, PETSC_TRUE, F, U);
     TestCall(LayoutGatherVec(t.layout, U, Mob + j * N));
   }
-  for (PetscInt j = 0; j < N; j++)
-    for (PetscInt i = 0; i < N; i++) {
-      asymmetry = PetscMax(asymmetry, PetscAbsReal(Mob[j * N + i] - Mob[i * N + j]));
-      largest = PetscMax(largest, PetscAbsReal(Mob[j * N + i]));
-    }
+  const PetscReal asymmetry = TestAsymmetry(N, Mob), largest = TestFar(N * N, Mob, NULL);
   CHECK(asymmetry < 1e-12 * largest && IsPositive(&t, 0.05, Mob),
         "a0 h^2/nu = %g, %d markers %g cells from a wall: mobility symmetric to %.1e and positive", coefficient,
         (int)markers, gap, asymmetry / largest);
-  TestWorldDestroy(&t);
 }
 
 /* (C F)_k of marker forces that turn and mirror with the wall: component d of all markers along (0) and away from it
  * (1). */
 static void NearVelocity(int side, PetscReal shift, PetscReal U[][2]) {
   enum { M = 48 }; /* a multiple of 4: the markers turn and mirror into markers */
-  TestWorld t;
+  ScopedWorld t;
   PetscReal all[2 * M];
   CreateAtWall(48, M, 0.5, side, "-fluid_inertia none", &t);
   const int normal = side / 2 ? 0 : 1, sign = side % 2 ? -1 : 1;
@@ -123,7 +113,6 @@ static void NearVelocity(int side, PetscReal shift, PetscReal U[][2]) {
     U[k][0] = all[2 * k + 1 - normal];
     U[k][1] = sign * all[2 * k + normal];
   }
-  TestWorldDestroy(&t);
 }
 
 /* Sums of squares do not depend on which marker is the first one. */

@@ -16,18 +16,14 @@ static PetscReal Difference(Mat A, Mat B, Vec x) {
 /* One component's part of a velocity as a vector of its own DMDA, for the assembled operator. */
 static PetscReal HelmholtzFieldError(Grid g, Field f, PetscReal a0, PetscReal nu, Vec w, Vec Hw) {
   const PetscInt n = g->columns[f] * g->rows[f];
-  const PetscScalar *wa;
-  PetscScalar *xa;
   Mat A;
   Vec x, y, Ax;
   TestCall(GridAssemble(g, f, a0, nu, &A));
   TestFieldVecs(g->da[f], &x, &y, &Ax, NULL);
   for (int k = 0; k < 2; k++) {
-    TestCall(VecGetArrayRead(k ? Hw : w, &wa));
-    TestCall(VecGetArray(k ? y : x, &xa));
+    const PetscScalar *wa = TestArray(k ? Hw : w);
+    PetscScalar *xa = TestArray(k ? y : x);
     TestCall(PetscArraycpy(xa, wa + GridRowStart(g, f, 0), n));
-    TestCall(VecRestoreArray(k ? y : x, &xa));
-    TestCall(VecRestoreArrayRead(k ? Hw : w, &wa));
   }
   TestCall(MatMult(A, x, Ax));
   TestCall(MatDestroy(&A));
@@ -81,27 +77,24 @@ static void CheckCoupling(const char name[], TestWorld *t) {
    Walls: w = 1 on the faces next to a marker is all that matters. */
 static void CheckSums(const char name[], TestWorld *t) {
   Vec w, x;
-  const PetscScalar *a;
-  PetscReal error = 0, sum, want;
+  PetscReal error = 0;
   TestFieldVecs(t->fluid->grid->velocity, &w, NULL);
   TestMarkerVecs(t->layout, 2, &x, NULL);
   TestCall(VecSet(w, 1));
   TestCall(MarkersInterpolate(t->coupling->markers, w, x));
-  TestCall(VecGetArrayRead(x, &a));
+  const PetscScalar *a = TestArray(x);
   for (PetscInt k = 0; k < 2 * t->layout->n; k++) error = PetscMax(error, PetscAbsReal(a[k] - 1));
-  TestCall(VecRestoreArrayRead(x, &a));
   CHECK(error < 1e-13, "%s: a constant velocity is interpolated exactly, error %.1e", name, error);
   TestRandomVec(6, x);
-  TestCall(VecSum(x, &want));
+  const PetscReal want = TestTotal(x);
   TestCall(VecSet(w, 0));
   TestCall(MarkersSpread(t->coupling->markers, 2, x, w));
-  TestCall(VecSum(w, &sum));
-  error = PetscAbsReal(sum - 2 * want) / t->layout->M;
+  error = PetscAbsReal(TestTotal(w) - 2 * want) / t->layout->M;
   CHECK(error < TOLERANCE, "%s: spreading keeps the sum of the force, error %.1e", name, error);
 }
 
 static void CheckCase(const char grid[], const char bc[], const char vesicle[], const char delta[]) {
-  TestWorld t;
+  ScopedWorld t;
   char options[1024], name[256];
   TestCall(PetscSNPrintf(options, sizeof(options), "%s %s %s -delta_type %s", grid, bc, vesicle, delta));
   TestCall(PetscSNPrintf(name, sizeof(name), "%s %s %s", strstr(grid, "-domain_cells") + 14, bc, delta));
@@ -109,7 +102,6 @@ static void CheckCase(const char grid[], const char bc[], const char vesicle[], 
   CheckFluid(name, t.fluid);
   CheckCoupling(name, &t);
   CheckSums(name, &t);
-  TestWorldDestroy(&t);
 }
 
 void Facts(void) {

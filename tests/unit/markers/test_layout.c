@@ -88,41 +88,33 @@ static PetscBool AreKnown(PetscInt n, const PetscScalar a[], PetscInt first, Pet
 static void CheckGather(const Case *c, int each) {
   const Layout l = c->l;
   const PetscInt n = each * l->n, N = each * l->M, first = each * l->first;
-  PetscScalar *all, *own, *x;
+  PetscScalar *all = TestReals(N), *own = TestReals(n);
   PetscInt size, local;
-  PetscReal norm;
-  PetscBool good;
   Vec v;
-  TestCall(PetscMalloc2(N, &all, n, &own));
   for (PetscInt k = 0; k < n; k++) own[k] = Known(first + k);
   TestCall(LayoutGather(l, each, own, all));
   CHECK(AreKnown(N, all, 0, 1), "%s, %d a marker: every rank gathers all", c->name, each);
   TestMarkerVecs(l, each, &v, NULL);
   TestCall(VecGetSize(v, &size));
   TestCall(VecGetLocalSize(v, &local));
-  TestCall(VecNorm(v, NORM_INFINITY, &norm));
-  CHECK(size == N && local == n && norm == 0, "%s, %d a marker: a zero vector, each rank's part its own", c->name,
-        each);
-  TestCall(VecGetArray(v, &x));
-  TestCall(PetscArraycpy(x, own, n));
-  TestCall(VecRestoreArray(v, &x));
+  CHECK(size == N && local == n && TestNorm(NORM_INFINITY, v) == 0,
+        "%s, %d a marker: a zero vector, each rank's part its own", c->name, each);
+  TestCall(PetscArraycpy(TestArray(v), own, n));
   TestCall(PetscArrayzero(all, N));
   TestCall(LayoutGatherVec(l, v, all));
   CHECK(AreKnown(N, all, 0, 1), "%s, %d a marker: a vector is gathered in the same order", c->name, each);
   for (PetscInt k = 0; k < N; k++) all[k] = (l->rank + 1) * Known(k);
   TestCall(LayoutSum(l, each, all, own));
-  good = AreKnown(n, own, first, 0.5 * l->size * (l->size + 1)); /* exact: halves of small integers */
-  CHECK(good, "%s, %d a marker: owners get the sum over ranks", c->name, each);
-  TestCall(PetscFree2(all, own));
+  const PetscReal ranks = 0.5 * l->size * (l->size + 1); /* exact: halves of small integers */
+  CHECK(AreKnown(n, own, first, ranks), "%s, %d a marker: owners get the sum over ranks", c->name, each);
 }
 
 /* To one rank, whichever it is, and back; other ranks' arrays stay. */
 static void CheckRoots(const Case *c, int each) {
   const Layout l = c->l;
   const PetscInt n = each * l->n, N = each * l->M, first = each * l->first;
-  PetscScalar *all, *own;
+  PetscScalar *all = TestReals(N), *own = TestReals(n);
   PetscInt wrong = 0;
-  TestCall(PetscMalloc2(N, &all, n, &own));
   for (PetscMPIInt root = 0; root < l->size; root++) {
     for (PetscInt k = 0; k < n; k++) own[k] = Known(first + k);
     for (PetscInt k = 0; k < N; k++) all[k] = -Known(k);
@@ -134,7 +126,6 @@ static void CheckRoots(const Case *c, int each) {
     if (!AreKnown(N, all, 0, l->rank == root ? 4 : -9)) wrong++;
   }
   CHECK(!wrong, "%s, %d a marker: to every rank and back", c->name, each);
-  TestCall(PetscFree2(all, own));
 }
 
 static void CheckCase(const char name[], PetscInt bodies, Size size) {

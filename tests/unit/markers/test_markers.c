@@ -68,19 +68,15 @@ static PetscReal Sum(Markers m, int comp, const PetscReal X[2]) {
 
 static void CheckInterpolation(const char name[], TestWorld *t) {
   const Markers m = t->coupling->markers;
-  const PetscScalar *X, *got;
   PetscReal error = 0;
   Vec w, U;
   TestFieldVecs(t->fluid->grid->velocity, &w, NULL);
   TestVecs(t->X, &U, NULL);
   TestFill(t->fluid->grid, FIELD_U, FIELD_V, VelocityValue, NULL, w);
   TestCall(MarkersInterpolate(m, w, U));
-  TestCall(VecGetArrayRead(t->X, &X));
-  TestCall(VecGetArrayRead(U, &got));
+  const PetscScalar *X = TestArray(t->X), *got = TestArray(U);
   for (PetscInt k = 0; k < 2 * t->layout->n; k++)
     error = PetscMax(error, PetscAbsReal(got[k] - Sum(m, k % 2, X + k - k % 2)));
-  TestCall(VecRestoreArrayRead(U, &got));
-  TestCall(VecRestoreArrayRead(t->X, &X));
   TestMost(1, &error);
   CHECK(error < TOLERANCE, "%s: every marker's velocity is the sum over all faces, error %.1e", name, error);
 }
@@ -88,19 +84,18 @@ static void CheckInterpolation(const char name[], TestWorld *t) {
 /* <E w, F> = <w, E^T F>, and two times E^T F comes on top of what is there. */
 static void CheckTranspose(const char name[], TestWorld *t, unsigned seed) {
   const Markers m = t->coupling->markers;
-  PetscReal error;
   Vec w, spread, F;
   TestFieldVecs(t->fluid->grid->velocity, &w, &spread, NULL);
   TestVecs(t->X, &F, NULL);
   TestRandomVec(seed, w);
   TestRandomVec(seed + 1, F);
-  error = TestTransposed(m->E, w, F);
+  PetscReal error = TestTransposed(m->E, w, F);
   CHECK(error < TOLERANCE, "%s: E and E^T are transposes, error %.1e", name, error);
   TestCall(MatMultTranspose(m->E, F, spread));
   TestCall(VecAXPY(spread, 1, w));
   TestCall(MarkersSpread(m, 1, F, w)); /* w + E^T F */
   TestCall(VecAXPY(w, -1, spread));
-  TestCall(VecNorm(w, NORM_INFINITY, &error));
+  error = TestNorm(NORM_INFINITY, w);
   CHECK(error < TOLERANCE, "%s: spreading adds to what is there, error %.1e", name, error);
 }
 
@@ -151,7 +146,7 @@ static void CheckList(const char name[], TestWorld *t) {
 
 static void CheckCase(const char options[], const char vesicles[], const char delta[]) {
   char all[1024], name[256];
-  TestWorld t;
+  ScopedWorld t;
   TestCall(PetscSNPrintf(all, sizeof(all), "%s %s -delta_type %s", options, vesicles, delta));
   TestCall(PetscSNPrintf(name, sizeof(name), "%s %s", strstr(options, "-domain_cells") + 14, delta));
   TestWorldCreate(&t, "%s", all);
@@ -159,7 +154,6 @@ static void CheckCase(const char options[], const char vesicles[], const char de
   CheckInterpolation(name, &t);
   for (unsigned k = 0; k < 3; k++) CheckTranspose(name, &t, 31 + 2 * k);
   CheckList(name, &t);
-  TestWorldDestroy(&t);
 }
 
 /* MarkersCheck of marker 0 of one vesicle moved to (x, y): all ranks have the message, which names the vesicle and
@@ -167,14 +161,12 @@ static void CheckCase(const char options[], const char vesicles[], const char de
 static void CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal y, const char what[]) {
   char message[PETVES_MAX_MESSAGE], who[64];
   const PetscScalar move[2] = {x, y};
-  PetscScalar *a;
   Vec X;
   TestVecs(t->X, &X, NULL);
   TestCall(VecCopy(t->X, X));
-  TestCall(VecGetArray(X, &a));
+  PetscScalar *a = TestArray(X);
   for (int c = 0; c < 2 && LayoutOwner(t->layout, vesicle) == t->layout->rank; c++)
     a[2 * LayoutOffset(t->layout, vesicle) + c] = move[c];
-  TestCall(VecRestoreArray(X, &a));
   TestCall(MarkersCheck(t->coupling->markers, t->coupling->markers->layout, X, message));
   TestCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT ":", vesicle + 1));
   CHECK(what ? strstr(message, who) && strstr(message, what) : !*message,
@@ -183,22 +175,18 @@ static void CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal 
 }
 
 static void CheckMessages(void) {
-  TestWorld t;
+  ScopedWorld t, walls;
   TestWorldCreate(&t, "-domain_cells 60,60 -domain_bc_x periodic " INSIDE);
+  TestWorldCreate(&walls, "-domain_cells 60,60 -domain_bc_x periodic " AT_WALLS);
   for (PetscInt v = 0; v < 5; v++) {
     CheckMessage(&t, v, 0.3, 1 - 2.9 / 30, "y_max");
     CheckMessage(&t, v, 0.3, -1 + 2.9 / 30, "y_min");
     CheckMessage(&t, v, NAN, 0, "not finite");
     CheckMessage(&t, v, 0.3, INFINITY, "not finite");
     CheckMessage(&t, v, 5.3, 1 - 3.1 / 30, NULL);
+    CheckMessage(&walls, v, 0.3, 1 - 0.24 / 30, "y_max");
+    CheckMessage(&walls, v, 0.3, 1 - 0.26 / 30, NULL);
   }
-  TestWorldDestroy(&t);
-  TestWorldCreate(&t, "-domain_cells 60,60 -domain_bc_x periodic " AT_WALLS);
-  for (PetscInt v = 0; v < 5; v++) {
-    CheckMessage(&t, v, 0.3, 1 - 0.24 / 30, "y_max");
-    CheckMessage(&t, v, 0.3, 1 - 0.26 / 30, NULL);
-  }
-  TestWorldDestroy(&t);
 }
 
 /* A folded stencil gives flows that are zero at the wall there: y along it exactly, y^2 across it up to where the scale

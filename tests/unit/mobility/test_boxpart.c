@@ -22,7 +22,7 @@ static void AddAll(BoxPart box, Layout l, PetscReal D[]) {
 static void SetVectors(World *w) {
   const PetscInt M = w->world.layout->M;
   const PetscReal *X = w->world.coupling->markers->X;
-  PetscReal *normal = w->normal, *force = w->force, size = 0;
+  PetscReal *normal = w->normal, *force = w->force;
   for (PetscInt v = 0; v < w->world.layout->bodies; v++) {
     const PetscInt first = w->world.layout->start[v], n = LayoutCount(w->world.layout, v);
     for (PetscInt k = 0; k < n; k++) {
@@ -33,8 +33,8 @@ static void SetVectors(World *w) {
       force[2 * at + 1] = 0.5 * PetscSinReal(2 * PETSC_PI * k / n) - 0.2 * PetscCosReal(6 * PETSC_PI * k / n);
     }
   }
-  for (PetscInt k = 0; k < 2 * M; k++) size += PetscSqr(normal[k]);
-  for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= PetscSqrtReal(size);
+  const PetscReal size = PetscSqrtReal(TestProduct(2 * M, normal, normal));
+  for (PetscInt k = 0; k < 2 * M; k++) normal[k] /= size;
 }
 
 static void WorldCreate(const char options[], PetscInt cells, PetscBool box, World *w) {
@@ -60,53 +60,46 @@ static void WorldCreate(const char options[], PetscInt cells, PetscBool box, Wor
 static PetscReal Form(World *w, const PetscReal x[], const PetscReal y[]) {
   const PetscInt n = 2 * w->world.layout->M;
   PetscReal sum = 0;
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) sum += x[i] * w->D[j * n + i] * y[j];
+  for (PetscInt j = 0; j < n; j++) sum += TestProduct(n, x, w->D + j * n) * y[j];
   return sum;
 }
 
-/* Root of the sum of squares of D - factor D', over that of D. */
-static PetscReal OffBy(World *w, World *finer, PetscReal factor) {
-  PetscReal sum = 0, size = 0;
-  for (PetscInt k = 0; k < PetscSqr(2 * w->world.layout->M); k++) {
-    sum += PetscSqr(w->D[k] - factor * finer->D[k]);
-    size += PetscSqr(w->D[k]);
-  }
-  return PetscSqrtReal(sum / size);
+/* Root of the sum of squares of a - factor b, over that of a. */
+static PetscReal Difference(PetscInt n, const PetscReal a[], PetscReal factor, const PetscReal b[]) {
+  PetscReal sum = 0;
+  for (PetscInt k = 0; k < n; k++) sum += PetscSqr(a[k] - factor * b[k]);
+  return PetscSqrtReal(sum / TestProduct(n, a, a));
 }
 
-static PetscReal Asymmetry(World *w) {
-  const PetscInt n = 2 * w->world.layout->M;
-  PetscReal most = 0;
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) most = PetscMax(most, PetscAbsReal(w->D[j * n + i] - w->D[i * n + j]));
-  return most;
+/* A pair that the end of its block destroys. */
+#define ScopedPair __attribute__((cleanup(PairDestroy))) World
+static void PairDestroy(World (*pair)[2]) {
+  for (int k = 0; k < 2; k++) TestWorldDestroy(&(*pair)[k].world);
 }
 
 /* The table itself: the same markers on a grid and on one twice as fine. At walls n.D n is minus what the images leave;
    over a period the flux is that of C + D. */
 static void CheckTable(const char name[], const char options[], PetscBool walls) {
-  World w[2] = {{{0}}};
+  ScopedPair w[2] = {{{0}}};
   for (int k = 0; k < 2; k++) WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]);
+  const PetscInt n = 2 * w[0].world.layout->M;
   for (int k = 0; k < 2; k++) {
-    CHECK(Asymmetry(&w[k]) == 0, "%s: D is symmetric to the bit, rank %d", name,
+    CHECK(TestAsymmetry(n, w[k].D) == 0, "%s: D is symmetric to the bit, rank %d", name,
           (int)w[k].world.coupling->mobility->near->box->at->rank);
     const PetscReal flux = Form(&w[k], w[k].normal, w[k].normal);
     if (walls) CHECK(PetscAbsReal(flux) < 2e-5, "%s: n.D n = %.1e", name, flux);
   }
-  const PetscReal off = OffBy(&w[0], &w[1], 4);
+  const PetscReal off = Difference(n * n, w[0].D, 4, w[1].D);
   CHECK(off < (walls ? 0.05 : 0.03), "%s: D at h is 4 D at h/2 but for %.4f", name, off);
-  for (int k = 0; k < 2; k++) TestWorldDestroy(&w[k].world);
 }
 
 /* 189 x 192 cells, which no coarser square ones fit: nearly the D of 63 x 64 cells, whose pair is their own. */
 static void CheckUnlike(const char own[], const char unlike[]) {
-  World w[2] = {{{0}}};
+  ScopedPair w[2] = {{{0}}};
   for (int k = 0; k < 2; k++) WorldCreate(k ? unlike : own, 63, PETSC_TRUE, &w[k]);
-  const PetscReal off = OffBy(&w[0], &w[1], 9),
+  const PetscReal off = Difference(PetscSqr(2 * w[0].world.layout->M), w[0].D, 9, w[1].D),
                   H = w[1].world.coupling->mobility->near->box->at->H / w[1].world.fluid->grid->h;
   CHECK(off < 0.05 && H > 2 && H < 3, "189 x 192 cells: from cells %.2f times as large, D within %.3f", H, off);
-  for (int k = 0; k < 2; k++) TestWorldDestroy(&w[k].world);
 }
 
 /* U = (E A^-1 E^T/h^2 + C + D) F where the Stokes solve is exact; D or not. */
@@ -114,51 +107,37 @@ static void Velocity(World *w, int part) {
   const NearField near = w->world.coupling->mobility->near;
   const BoxPart box = near->box;
   Vec F, U;
-  PetscScalar *f;
   TestMarkerVecs(w->world.layout, 2, &F, &U, NULL);
-  TestCall(VecGetArray(F, &f));
-  TestCall(PetscArraycpy(f, w->force + 2 * w->world.layout->first, 2 * w->world.layout->n));
-  TestCall(VecRestoreArray(F, &f));
+  TestCall(PetscArraycpy(TestArray(F), w->force + 2 * w->world.layout->first, 2 * w->world.layout->n));
   if (!part) near->box = NULL;
   TestWorldRespond(&w->world, PETSC_TRUE, F, U);
   near->box = box;
   TestCall(LayoutGatherVec(w->world.layout, U, w->U[part]));
 }
 
-static PetscReal Difference(PetscInt n, const PetscReal a[], const PetscReal b[]) {
-  PetscReal sum = 0, size = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    sum += PetscSqr(a[k] - b[k]);
-    size += PetscSqr(b[k]);
-  }
-  return PetscSqrtReal(sum / size);
-}
-
 /* The markers' velocity on two grids, with D and without. */
 static void CheckVelocity(const char name[], const char options[], PetscReal most) {
-  World w[2] = {{{0}}};
+  ScopedPair w[2] = {{{0}}};
   PetscReal off[2];
   for (int k = 0; k < 2; k++) {
     WorldCreate(options, k ? 64 : 32, PETSC_TRUE, &w[k]);
     for (int part = 0; part < 2; part++) Velocity(&w[k], part);
   }
-  for (int part = 0; part < 2; part++) off[part] = Difference(2 * w[0].world.layout->M, w[0].U[part], w[1].U[part]);
+  for (int part = 0; part < 2; part++) off[part] = Difference(2 * w[0].world.layout->M, w[1].U[part], 1, w[0].U[part]);
   CHECK(off[1] < most, "%s: velocities on 32 and 64 cells differ by %.1e", name, off[1]);
   CHECK(off[1] < 0.4 * off[0], "%s: by %.2f of what they do without D", name, off[1] / off[0]);
-  for (int k = 0; k < 2; k++) TestWorldDestroy(&w[k].world);
 }
 
 /* A vesicle a third of a spacing from its own image on both sides: finer points for all images with the box part, as
    without it: unrefined they differ by 2.4e-2. */
 static void CheckOwnImages(const char name[], const char options[]) {
-  World w[2] = {{{0}}};
+  ScopedPair w[2] = {{{0}}};
   for (int k = 0; k < 2; k++) {
     WorldCreate(options, 64, (PetscBool)k, &w[k]);
     Velocity(&w[k], k);
   }
-  const PetscReal apart = Difference(2 * w[0].world.layout->M, w[1].U[1], w[0].U[0]);
+  const PetscReal apart = Difference(2 * w[0].world.layout->M, w[0].U[0], 1, w[1].U[1]);
   CHECK(apart < 2e-3, "%s: velocities with and without D differ by %.1e", name, apart);
-  for (int k = 0; k < 2; k++) TestWorldDestroy(&w[k].world);
 }
 
 #define ONE                                                                                                            \
@@ -178,7 +157,6 @@ static void CheckOwnImages(const char name[], const char options[]) {
   "-domain_box 0,8,0,8 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_center 7.7654321,4.3 "                  \
   "-vesicle_markers 35 -vesicle_allow_close_markers true "
 #define CHANNEL "-domain_bc_x periodic "
-#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
 
 /* Largest D F - SUM phi Q diag(l) Q^T psi^T F of sources all unlike, D F by BoxPartApply, over the largest. */
 static PetscReal ApplyOffBy(BoxPart box) {

@@ -2,12 +2,6 @@
 #include "facts.h"
 #include "bodies/bending.h"
 
-static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
-  PetscReal sum = 0;
-  for (PetscInt i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* Exact on trigonometric curves; the first derivative antisymmetric, the fourth symmetric. */
 static void CheckDerivatives(PetscInt n) {
   static const int powers[] = {1, 2, 4};
@@ -46,7 +40,8 @@ static void CheckDerivatives(PetscInt n) {
   SpectralDerivative(s, 1, 1, y, b);
   SpectralDerivative(s, 4, 1, x, c);
   SpectralDerivative(s, 4, 1, y, d);
-  const PetscReal odd = Dot(2 * n, y, a) + Dot(2 * n, x, b), even = Dot(2 * n, y, c) - Dot(2 * n, x, d);
+  const PetscReal odd = TestProduct(2 * n, y, a) + TestProduct(2 * n, x, b),
+                  even = TestProduct(2 * n, y, c) - TestProduct(2 * n, x, d);
   CHECK(PetscAbsReal(odd) < 1e-12 * n, "%d markers: y.Dx + x.Dy = %.1e for random x, y", (int)n, odd);
   CHECK(PetscAbsReal(even) < 1e-11 * n, "%d markers: y.D4x - x.D4y = %.1e for random x, y", (int)n, even);
   TestCall(SpectralDestroy(&s));
@@ -100,12 +95,11 @@ static void CheckShift(PetscInt n) {
   CHECK(error < 1e-12, "%d markers: labels shifted exactly on %d waves, error %.1e", (int)n, (int)((n + 1) / 2), error);
   for (PetscInt k = 0; k < 2 * n; k++) x[k] = TestRandom(&seed);
   SpectralShift(s, 2, phi, x, y);
-  const PetscReal change = Dot(2 * n, y, y) / Dot(2 * n, x, x) - 1;
+  const PetscReal change = TestProduct(2 * n, y, y) / TestProduct(2 * n, x, x) - 1;
   CHECK(n % 2 ? PetscAbsReal(change) < 1e-13 : change < 0, "%d markers: a shift changes the sum of squares by %.1e",
         (int)n, change);
   SpectralShift(s, 2, -phi, y, y);
-  error = 0;
-  for (PetscInt k = 0; k < 2 * n; k++) error = PetscMax(error, PetscAbsReal(y[k] - x[k]));
+  error = TestFar(2 * n, y, x);
   if (n % 2) CHECK(error < 1e-13, "%d markers: and back, in place, to %.1e", (int)n, error);
   TestCall(SpectralDestroy(&s));
 }
@@ -128,8 +122,8 @@ static void NearCreate(const char derivative[], Near *q) {
   q->derivative = derivative;
   const Membrane m = q->w.membrane;
   const PetscInt M = q->w.M;
-  TestCall(PetscCalloc4(2 * M, &q->X, 2 * M, &q->U, 2 * M, &q->F, 2 * M, &q->other));
-  TestCall(PetscCalloc2(M, &q->d, M, &q->sigma));
+  for (int k = 0; k < 6; k++)
+    *(PetscReal * *[]){&q->X, &q->U, &q->F, &q->other, &q->d, &q->sigma}[k] = TestReals(2 * M);
   for (PetscInt k = 0; k < 2 * M; k++) {
     q->U[k] = TestRandom(&seed);
     q->X[k] = q->w.scene->shape.X[k] + 0.02 * m->ds[0] * TestRandom(&seed);
@@ -141,8 +135,6 @@ static void NearCreate(const char derivative[], Near *q) {
 }
 
 static void NearDestroy(Near *q) {
-  TestCall(PetscFree4(q->X, q->U, q->F, q->other));
-  TestCall(PetscFree2(q->d, q->sigma));
   TestCall(LawDestroy(&q->law));
   TestMembraneDestroy(&q->w);
 }
@@ -154,12 +146,12 @@ static void CheckForces(Near *q) {
   const PetscReal step = 1e-4;
   PetscReal half[2] = {0, 0}, energy[2], rate, slope;
   LawForce(q->law, 1, q->sigma, q->F);
-  rate = Dot(M, q->sigma, q->d) - Dot(2 * M, q->U, q->F);
+  rate = TestProduct(M, q->sigma, q->d) - TestProduct(2 * M, q->U, q->F);
   CHECK(PetscAbsReal(rate) < 1e-13 * M, "%s: sigma.(Dm U) - (Dm^T sigma).U = %.1e", q->derivative, rate);
   for (int side = 0; side < 2; side++) {
     for (PetscInt k = 0; k < 2 * M; k++) q->other[k] = q->X[k] + (side ? step : -step) * q->U[k];
     MembraneEdges(m, 0, q->other, q->F);
-    half[side] = 0.5 * Dot(2 * M, q->F, q->F);
+    half[side] = 0.5 * TestProduct(2 * M, q->F, q->F);
     energy[side] = MembraneBendingEnergy(m, 0, q->other);
   }
   rate = 0;
@@ -169,7 +161,7 @@ static void CheckForces(Near *q) {
         q->derivative, rate, slope);
   TestCall(PetscArrayzero(q->F, 2 * M));
   MembraneBending(m, -m->bending, q->X, q->F); /* the force, per marker */
-  rate = Dot(2 * M, q->F, q->U);
+  rate = TestProduct(2 * M, q->F, q->U);
   slope = (energy[1] - energy[0]) / (2 * step);
   CHECK(PetscAbsReal(slope + rate) < 1e-8 * PetscAbsReal(rate),
         "%s: bending force is minus the gradient of the energy, %.8e against %.8e", q->derivative, rate, -slope);
@@ -227,7 +219,7 @@ static void CheckMembrane(const char derivative[]) {
 /* Few markers on a slender ellipse: the spectral curve through them has its length, its area and equal edges, and its
    symmetry about the first axis. */
 static void CheckStart(const char *cells) {
-  TestMembrane w;
+  ScopedMembrane w;
   Measures measures;
   Curve curve = {.axes = {0.15, 0.6}};
   PetscReal asymmetry = 0;
@@ -246,7 +238,6 @@ static void CheckStart(const char *cells) {
         "%d markers: length off by %.1e, area by %.1e, edges by %.1e, symmetry by %.1e", (int)M,
         measures.length / CurveLength(&curve) - 1, measures.area / (PETSC_PI * 0.15 * 0.6) - 1, measures.edge_ratio - 1,
         asymmetry);
-  TestMembraneDestroy(&w);
 }
 
 void Facts(void) {

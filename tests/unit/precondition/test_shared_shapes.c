@@ -87,20 +87,15 @@ static void CheckFit(PetscInt n) {
 
 /* S is the near field of unbounded fluid, where that is all of the mobility. */
 static void CheckSelfLayer(PetscInt n) {
-  TestWorld t;
-  PetscScalar *F, *U;
-  PetscReal *S, most = 0, error = 0;
+  ScopedWorld t;
+  PetscReal *S = TestReals(4 * n * n), *F = TestReals(2 * n), *U = TestReals(2 * n), most = 0, error = 0;
   TestWorldCreate(&t,
                   "-scheme_type coupled -coupling_near_field exact -membrane_derivative spectral -delta_type cbs54 "
                   "-fluid_inertia none -domain_bc_x free -domain_bc_y free -vesicle_markers %d",
                   (int)n);
-  TestCall(PetscMalloc3(4 * n * n, &S, 2 * n, &F, 2 * n, &U));
   TestCall(LayerSelf(&stokeslet, &t.coupling->mobility->near->set, t.membrane->spectral[0], n, t.coupling->markers->X,
                      NULL, S));
-  for (PetscInt i = 0; i < 2 * n; i++) {
-    F[i] = sin(1.0 + 0.3 * i);
-    U[i] = 0;
-  }
+  for (PetscInt i = 0; i < 2 * n; i++) F[i] = sin(1.0 + 0.3 * i);
   TestCall(NearFieldApply(t.coupling->mobility->near, 1, F, U));
   for (PetscInt i = 0; i < 2 * t.layout->n; i++) {
     PetscReal sum = 0;
@@ -109,8 +104,6 @@ static void CheckSelfLayer(PetscInt n) {
     error = PetscMax(error, fabs(U[i] - sum));
   }
   CHECK(error <= 1e-12 * most, "%d markers: S of one curve is the near field's", (int)n);
-  TestCall(PetscFree3(S, F, U));
-  TestWorldDestroy(&t);
 }
 
 /* r_V and r_s of V and sigma of one vesicle in unbounded fluid: V + S F, Dm V/h^2, F = Dm^T sigma + (c_b ds/a0) D4 V.
@@ -137,11 +130,10 @@ static void Multiply(TestWorld *t, PetscInt v, const PetscScalar V[], const Pets
 
 /* All vesicles take the first one's shape, and each gets its own solution by it. */
 static void CheckSolve(void) {
-  TestWorld t;
+  ScopedWorld t;
   SharedShapes s;
   PetscBool failed;
   PetscScalar V[VESICLES * 2 * N], sigma[VESICLES * N], U[VESICLES * 2 * N], r[VESICLES * N];
-  PetscReal error = 0, most = 0;
   TestWorldCreate(&t, OPTIONS "-domain_cells 64,32 -domain_bc_x free -domain_bc_y free -vesicle_semi_axes 0.4,0.8");
   TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
   TestCall(SharedShapesFollow(s, &failed));
@@ -153,30 +145,19 @@ static void CheckSolve(void) {
   for (PetscInt v = 0; v < own; v++)
     Multiply(&t, t.layout->own + v, V + 2 * N * v, sigma + N * v, U + 2 * N * v, r + N * v);
   TestCall(SharedShapesSolve(s, U, r));
-  for (PetscInt i = 0; i < own * 2 * N; i++) {
-    error = PetscMax(error, fabs(U[i] - V[i]));
-    most = PetscMax(most, fabs(V[i]));
-  }
+  PetscReal error = TestFar(own * 2 * N, U, V);
+  const PetscReal most = TestFar(own * 2 * N, V, NULL);
   TestMost(1, &error);
   CHECK(error < 1e-6 * most, "each vesicle's V comes back, %.1e", (error / most));
   TestCall(SharedShapesDestroy(&s));
-  TestWorldDestroy(&t);
 }
 
 /* r_V and r_s of V and sigma in a box with walls, where velocity comes from the grid and the near field. */
 static void MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) {
-  const PetscScalar *f;
-  PetscScalar *u;
   Vec F;
   TestVecs(V, &F, NULL);
-  TestCall(VecGetArrayRead(V, &f));
-  TestCall(VecGetArray(F, &u));
-  TestCall(ForcesRate(t->coupling->forces, 1 / t->fluid->a0, f, u));
-  TestCall(VecRestoreArrayRead(V, &f));
-  TestCall(VecGetArrayRead(sigma, &f));
-  LawForce(t->coupling->law, 1, f, u);
-  TestCall(VecRestoreArrayRead(sigma, &f));
-  TestCall(VecRestoreArray(F, &u));
+  TestCall(ForcesRate(t->coupling->forces, 1 / t->fluid->a0, TestArray(V), TestArray(F)));
+  LawForce(t->coupling->law, 1, TestArray(sigma), TestArray(F));
   TestWorldRespond(t, PETSC_TRUE, F, U);
   TestCall(VecAXPY(U, 1, V));
   TestCall(CouplingStretching(t->coupling, V, s));
@@ -185,42 +166,33 @@ static void MultiplyAll(TestWorld *t, Vec V, Vec sigma, Vec U, Vec s) {
 /* Vesicles next to one another: the shapes with what vesicles do to one another, coarse grid and near
    markers, give V back but for some per cent. */
 static void CheckCross(void) {
-  TestWorld t;
+  ScopedWorld t;
   SharedShapes s;
   PetscBool failed;
   Vec V, sigma, U, r;
-  PetscScalar *v, *g;
   TestWorldCreate(&t, OPTIONS CLOSE);
   TestCall(SharedShapesCreate(&t.scene->fluid, t.coupling, &s));
   TestCall(SharedShapesFollow(s, &failed));
   CHECK(!failed && s->cross, "a coarse grid in a channel");
   TestMarkerVecs(t.layout, 2, &V, &U, NULL);
   TestMarkerVecs(t.layout, 1, &sigma, &r, NULL);
-  TestCall(VecGetArray(V, &v));
-  TestCall(VecGetArray(sigma, &g));
+  PetscScalar *v = TestArray(V), *g = TestArray(sigma);
   for (PetscInt k = 0; k < t.layout->n; k++) {
     const PetscReal at = 2 * PETSC_PI * (PetscReal)((t.layout->first + k) % N) / N;
     v[2 * k] = cos(2 * at);
     v[2 * k + 1] = sin(at) + cos(3 * at);
     g[k] = cos(2 * at + 1);
   }
-  TestCall(VecRestoreArray(sigma, &g));
-  TestCall(VecRestoreArray(V, &v));
   MultiplyAll(&t, V, sigma, U, r);
-  TestCall(VecGetArray(U, &v));
-  TestCall(VecGetArray(r, &g));
-  TestCall(SharedShapesSolve(s, v, g));
-  TestCall(VecRestoreArray(r, &g));
-  TestCall(VecRestoreArray(U, &v));
+  TestCall(SharedShapesSolve(s, TestArray(U), TestArray(r)));
   const PetscReal error = TestApart(NORM_2, U, V);
   CHECK(error < 0.05, "V comes back, %.3f of it is left", error);
   TestCall(SharedShapesDestroy(&s));
-  TestWorldDestroy(&t);
 }
 
 /* The memory makes the same shapes again, and is refused where it is of other vesicles. */
 static void CheckMemory(void) {
-  TestWorld t;
+  ScopedWorld t;
   SharedShapes s, again;
   PetscBool failed, valid;
   TestWorldCreate(&t, OPTIONS "-domain_cells 64,32 -domain_bc_x periodic -vesicle_reduced_area "
@@ -241,7 +213,6 @@ static void CheckMemory(void) {
   CHECK(!valid, "a memory of other vesicles is refused");
   TestCall(SharedShapesDestroy(&again));
   TestCall(SharedShapesDestroy(&s));
-  TestWorldDestroy(&t);
 }
 
 void Facts(void) {

@@ -54,15 +54,12 @@ static void SolveProblem(const char name[], Problem *q, PetscBool random) {
 }
 
 /* d times the scale of each edge's row: what a residual of S^T u = g counts in the solver's norm. */
-static void ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
-  PetscScalar *a;
+static PetscReal ScaledNorm(Problem *q, Vec d) {
   Vec scaled;
   TestVecs(q->s->x, &scaled, NULL);
   TestCall(UnknownsPack(q->s->unknowns, NULL, NULL, d, scaled));
-  TestCall(VecGetArray(scaled, &a));
-  UnknownsScale(q->s->unknowns, PETSC_FALSE, a);
-  TestCall(VecRestoreArray(scaled, &a));
-  TestCall(VecNorm(scaled, NORM_2, norm));
+  UnknownsScale(q->s->unknowns, PETSC_FALSE, TestArray(scaled));
+  return TestNorm(NORM_2, scaled);
 }
 
 /* The solution put back into H w + B E w/a0 + G p + S sigma = f, G^T w = 0, S^T w = g by the operators that split uses;
@@ -70,7 +67,6 @@ static void ScaledNorm(Problem *q, Vec d, PetscReal *norm) {
 static void CheckSolution(const char name[], Problem *q, PetscBool random) {
   const Fluid f = q->t.fluid;
   const Coupling c = q->t.coupling;
-  PetscReal row[3], reference[2];
   Vec r, div, U, stretching;
   SolveProblem(name, q, random);
   TestVecs(q->f, &r, NULL);
@@ -83,15 +79,11 @@ static void CheckSolution(const char name[], Problem *q, PetscBool random) {
   TestCall(GridGradient(f->grid, 1, q->p, PETSC_TRUE, r));
   TestCall(CouplingSpreadTension(c, 1, q->sigma, r));
   TestCall(VecAXPY(r, -1, q->f));
-  TestCall(VecNorm(r, NORM_2, &row[0]));
   TestCall(GridGradientTranspose(f->grid, 1, q->w, div));
-  TestCall(VecNorm(div, NORM_2, &row[1]));
   TestCall(MatMultTranspose(c->S, q->w, stretching));
   TestCall(VecAXPY(stretching, -1, q->g));
-  ScaledNorm(q, stretching, &row[2]);
-  TestCall(VecNorm(q->f, NORM_2, &reference[0]));
-  ScaledNorm(q, q->g, &reference[1]);
-  const PetscReal size = PetscSqrtReal(PetscSqr(reference[0]) + PetscSqr(reference[1]));
+  const PetscReal row[3] = {TestNorm(NORM_2, r), TestNorm(NORM_2, div), ScaledNorm(q, stretching)};
+  const PetscReal size = PetscHypotReal(TestNorm(NORM_2, q->f), ScaledNorm(q, q->g));
   for (int k = 0; k < 3; k++) /* the solver's residual is V - E u; in row 1 it counts with the bending's stiffness */
     CHECK(row[k] < (k ? 3e-12 : 2e-11) * size, "%s: row %d of the solution put back, %.1e", name, k + 1, row[k] / size);
 }
@@ -99,7 +91,6 @@ static void CheckSolution(const char name[], Problem *q, PetscBool random) {
 /* B E: <B E w, v> = <w, B E v>, and <B E w, w> >= 0. */
 static void CheckBending(const char name[], Problem *q) {
   const Coupling c = q->t.coupling;
-  PetscReal energy, one, two;
   Vec x[2], y[2], U;
   TestVecs(q->t.X, &U, NULL);
   for (int k = 0; k < 2; k++) {
@@ -108,46 +99,29 @@ static void CheckBending(const char name[], Problem *q) {
     TestCall(MatMult(c->markers->E, x[k], U));
     TestCall(MatMult(c->B, U, y[k]));
   }
-  TestCall(VecDot(y[0], x[0], &energy));
-  TestCall(VecDot(y[0], x[1], &one));
-  TestCall(VecDot(y[1], x[0], &two));
+  const PetscReal energy = TestDot(y[0], x[0]), one = TestDot(y[0], x[1]), two = TestDot(y[1], x[0]);
   CHECK(PetscAbsReal(one - two) < 1e-12 * PetscAbsReal(one), "%s: B E is symmetric, %.1e", name,
         PetscAbsReal(one - two) / PetscAbsReal(one));
   CHECK(energy > 0, "%s: B E only takes energy, %.3e", name, energy);
-  for (int k = 0; k < 2; k++) {}
 }
 
-/* Largest difference of a column of Mob from the part U of one vesicle's markers, on every rank. */
-static void ColumnError(Layout l, PetscInt v, Vec U, const PetscReal column[], PetscReal *error) {
-  PetscScalar *all;
-  *error = 0;
-  TestCall(PetscMalloc1(2 * l->M, &all));
-  TestCall(LayoutGatherVec(l, U, all));
-  for (PetscInt row = 0; row < 2 * LayoutCount(l, v); row++)
-    *error = PetscMax(*error, PetscAbsReal(column[row] - all[2 * l->start[v] + row]));
-  TestCall(PetscFree(all));
-}
-
-/* Largest |Mob - E A^-1 E^T| of one vesicle, one Stokes solve a column. */
-static void MobilityError(Problem *q, PetscInt v, const PetscReal Mob[], PetscReal *error) {
+/* Largest |Mob - E A^-1 E^T| of one vesicle, one Stokes solve a column, on every rank. */
+static PetscReal MobilityError(Problem *q, PetscInt v, const PetscReal Mob[]) {
   const Markers m = q->t.coupling->markers;
   const PetscInt first = 2 * q->t.layout->start[v], n = 2 * LayoutCount(q->t.layout, v);
-  Stokes stokes;
+  PetscReal *all = TestReals(2 * q->t.layout->M), error = 0;
   Vec F, r;
-  *error = 0;
-  TestCall(StokesCreate(q->t.fluid, &stokes));
   TestVecs(q->t.X, &F, NULL);
   TestVecs(q->f, &r, NULL);
   for (PetscInt column = 0; column < n; column++) {
-    PetscReal off;
     TestUnit(first + column, F);
     TestCall(MatMultTranspose(m->E, F, r));
-    TestCall(StokesProject(stokes, r, NULL, r, q->p)); /* the table knows no walls */
+    TestCall(StokesProject(TestWorldStokes(&q->t), r, NULL, r, q->p)); /* the table knows no walls */
     TestCall(MatMult(m->E, r, F));
-    ColumnError(q->t.layout, v, F, Mob + column * n, &off);
-    *error = PetscMax(*error, off);
+    TestCall(LayoutGatherVec(q->t.layout, F, all));
+    error = PetscMax(error, TestFar(n, Mob + column * n, all + first));
   }
-  TestCall(StokesDestroy(&stokes));
+  return error;
 }
 
 /* Mob of one vesicle against E A^-1 E^T: largest difference over the largest entry; and that shares of it add up. */
@@ -155,23 +129,17 @@ static void CheckMobility(const char name[], Problem *q, PetscInt v) {
   const MeanMobility mobility = q->s->preconditioner->mobility;
   const PetscInt n = 2 * LayoutCount(q->t.layout, v);
   const MarkerRange own = {q->t.layout->start[v], n / 2};
-  PetscReal most = 0, error, asymmetry = 0, apart = 0;
   TestCall(MeanMobilitySetUp(mobility, q->t.fluid->alpha));
   PetscReal *Mob = TestReals(n * n), *part = TestReals(n * n);
   TestCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
-  MobilityError(q, v, Mob, &error);
-  for (PetscInt c = 0; c < n; c++)
-    for (PetscInt r = 0; r < n; r++) {
-      asymmetry = PetscMax(asymmetry, PetscAbsReal(Mob[c * n + r] - Mob[r * n + c]));
-      most = PetscMax(most, PetscAbsReal(Mob[c * n + r]));
-    }
+  const PetscReal error = MobilityError(q, v, Mob), asymmetry = TestAsymmetry(n, Mob), most = TestFar(n * n, Mob, NULL);
   CHECK(error < 1e-11 * most, "%s: Mob is E A^-1 E^T, %.1e", name, error / most);
   CHECK(asymmetry < 1e-11 * most, "%s: Mob is symmetric, %.1e", name, asymmetry / most);
   for (PetscInt p = 0; p < 3; p++) {
     TestCall(MeanMobilityAssemble(mobility, &own, &own, p, 3, part));
     for (PetscInt k = 0; k < n * n; k++) Mob[k] -= part[k];
   }
-  for (PetscInt k = 0; k < n * n; k++) apart = PetscMax(apart, PetscAbsReal(Mob[k]));
+  const PetscReal apart = TestFar(n * n, Mob, NULL);
   CHECK(apart == 0, "%s: three shares of Mob add up to it, %.1e", name, apart / most);
 }
 
@@ -191,11 +159,9 @@ static void CheckNearField(const char box[], PetscReal a0, PetscReal most_error,
   if (q.s->preconditioner->mobility && !q.t.fluid->grid->free) {
     const PetscInt n = 2 * q.t.layout->M;
     const MarkerRange own = {0, n / 2};
-    PetscReal error, most = 0;
     PetscReal *Mob = TestReals(n * n);
     TestCall(MeanMobilityAssemble(q.s->preconditioner->mobility, &own, &own, 0, 1, Mob));
-    MobilityError(&q, 0, Mob, &error);
-    for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(Mob[k]));
+    const PetscReal error = MobilityError(&q, 0, Mob), most = TestFar(n * n, Mob, NULL);
     CHECK(error < most_error * most, "%s, a0 = %g: Mob is E A^-1 E^T within %.1e", box, a0, error / most);
   }
   ProblemDestroy(&q);

@@ -56,16 +56,17 @@ static PetscReal Speed(PetscInt n, const PetscReal X[], const PetscReal velocity
 static void CheckFormula(const char options[], PetscReal dt, PetscBool turns, int order) {
   static const PetscReal a[4][4] = {{0}, {1, 1}, {3. / 2, 2, -1. / 2}, {11. / 6, 3, -3. / 2, 1. / 3}};
   const char *last = strstr(options, "-vesicle_bending");
-  TestWorld w;
-  PetscReal *X[FIRST], *U[2], *found, *shifted, *work, off = 0, speed = 0;
+  ScopedWorld w;
+  PetscReal *X[FIRST], *U[2], speed = 0;
   TestRunCreate(&w, "%s -scheme_order %d -time_step %.17g", options, order, dt);
   const PetscInt n = w.layout->M;
-  for (int k = 0; k < 32; k++) TestCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
-  for (int k = 0; k < FIRST; k++) TestCall(PetscMalloc1(2 * n, &X[k]));
-  TestCall(PetscMalloc5(2 * n, &U[0], 2 * n, &U[1], 2 * n, &found, 2 * n, &shifted, 6 * n, &work));
-  for (int k = 0; k < FIRST; k++)
-    TestCall(LayoutGatherVec(w.layout, k ? w.scheme->old[k - 1].X : w.scheme->state.X, X[k]));
-  for (int k = 0; k < 2; k++) TestCall(LayoutGatherVec(w.layout, k ? w.scheme->old[0].U : w.scheme->state.U, U[k]));
+  for (int k = 0; k < 16; k++) TestCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
+  PetscReal *found = TestReals(2 * n), *shifted = TestReals(2 * n), *work = TestReals(6 * n);
+  for (int k = 0; k < FIRST; k++) {
+    const State *state = k ? &w.scheme->old[k - 1] : &w.scheme->state;
+    TestCall(LayoutGatherVec(w.layout, state->X, X[k] = TestReals(2 * n)));
+    if (k < 2) TestCall(LayoutGatherVec(w.layout, state->U, U[k] = TestReals(2 * n)));
+  }
   if (turns) speed = Speed(n, X[1], U[1], work);
   Derivative(n, X[0], work);
   for (PetscInt i = 0; i < 2 * n; i++) found[i] = a[order][0] * X[0][i] / dt + speed * work[i];
@@ -73,13 +74,10 @@ static void CheckFormula(const char options[], PetscReal dt, PetscBool turns, in
     Shift(n, X[k], speed * k * dt, shifted);
     for (PetscInt i = 0; i < 2 * n; i++) found[i] -= a[order][k] * shifted[i] / dt;
   }
-  for (PetscInt i = 0; i < 2 * n; i++) off = PetscMax(off, PetscAbsReal(found[i] - U[0][i]));
+  const PetscReal off = TestFar(2 * n, found, U[0]);
   CHECK(!*w.scheme->report.failure && off < 1e-12 && turns == (PetscAbsReal(speed) > 0.3),
         "%s, dt = %g: order %d, labels that turn at %.2f: U is the formula's, %.1e", last ? last : "chords", dt, order,
         speed, off);
-  for (int k = 0; k < FIRST; k++) TestCall(PetscFree(X[k]));
-  TestCall(PetscFree5(U[0], U[1], found, shifted, work));
-  TestWorldDestroy(&w);
 }
 
 #define SHEAR                                                                                                          \
