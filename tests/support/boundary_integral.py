@@ -2,20 +2,7 @@
 a capsule in unbounded fluid by explicit steps."""
 
 import numpy as np
-
-
-def exponential_integral(x):
-    """E1(x): its series up to 1, and Lentz' continued fraction beyond."""
-    x = np.asarray(x, float)
-    low, high = np.minimum(x, 1), np.maximum(x, 1)
-    series, term = -np.euler_gamma - np.log(low), np.ones_like(low)
-    for n in range(1, 22):
-        term = term * -low / n
-        series = series - term / n
-    fraction = np.zeros_like(high)
-    for n in range(80, 0, -1):
-        fraction = n / (1 + n / (high + fraction))
-    return np.where(x < 1, series, np.exp(-high) / (high + fraction))
+from scipy.special import exp1
 
 
 def remainder(d, period, split):
@@ -30,7 +17,7 @@ def remainder(d, period, split):
             safe = np.where(r2 > 0, r2, 1)
             dyad = r[..., :, None] * r[..., None, :] / safe
             near = np.exp(-(split**2) * safe)
-            near = (0.5 * exponential_integral(split**2 * safe) - near) * one + dyad * near
+            near = (0.5 * exp1(split**2 * safe) - near) * one + dyad * near
             if p or q:
                 out += near
                 continue
