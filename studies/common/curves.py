@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from petves import curves
 from petves.run import centroid
 
 
@@ -23,16 +24,7 @@ def radius(reduced_area: float) -> float:
 
 def trigonometric(markers: np.ndarray, count: int = 4096) -> np.ndarray:
     """Return points of the trigonometric interpolation of markers, shape (n, 2), at equal steps of the index."""
-    n = len(markers)
-    hat = np.fft.fft(markers[:, 0] + 1j * markers[:, 1])
-    padded = np.zeros(count, complex)
-    half = (n - 1) // 2
-    padded[: half + 1] = hat[: half + 1]
-    padded[-half:] = hat[-half:]
-    if n % 2 == 0:
-        padded[n // 2] = padded[-(n // 2)] = hat[n // 2] / 2
-    points = np.fft.ifft(padded) * count / n
-    return np.stack([points.real, points.imag], axis=1)
+    return curves.trigonometric(markers, count)
 
 
 def at(values: np.ndarray, place: np.ndarray) -> np.ndarray:

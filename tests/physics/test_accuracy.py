@@ -141,15 +141,6 @@ def test_film_between_soft_vesicles(chi, cached_run):
         assert abs(long.series[f"{name}_1"]).max() < 1e-12, name
 
 
-def test_trigonometric_interpolation():
-    """Of an ellipse, exact, with an odd and an even number of markers."""
-    for n in (11, 12):
-        t = 2 * np.pi * np.arange(n) / n
-        fine = 2 * np.pi * np.arange(256) / 256
-        got = trigonometric(np.stack([2 * np.cos(t) + 1, np.sin(t)], axis=1), 256)
-        np.testing.assert_allclose(got, np.stack([2 * np.cos(fine) + 1, np.sin(fine)], axis=1), rtol=0, atol=1e-13)
-
-
 PAIR = "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_count 2 -vesicle_semi_axes 0.2,0.4 -vesicle_angle 0 "
 CASES = {
     "exact": "",

@@ -155,10 +155,8 @@ def test_ranks_and_restart(tmp_path):
 def first_velocity(folder, cells: int, ratio: float) -> np.ndarray:
     """Of an ellipse .04 from the bottom of a channel of height 2, which shear takes along."""
     scene = f"{QUIET} {PLAIN} -domain_box -1,1,-1,1 -domain_cells {cells},{cells} -domain_bc_x periodic"
-    scene += (
-        " -flow_type shear -vesicle_semi_axes .35,.2 -vesicle_angle 10 -vesicle_center 0,-.7539 -vesicle_markers 91"
-    )
-    scene += f" -vesicle_bending .02 -vesicle_viscosity_ratio {ratio} -vesicle_allow_close_markers"
+    scene += " -flow_type shear -vesicle_semi_axes .35,.2 -vesicle_angle 10 -vesicle_center 0,-.7539"
+    scene += f" -vesicle_markers 91 -vesicle_bending .02 -vesicle_viscosity_ratio {ratio} -vesicle_allow_close_markers"
     run = run_petves(folder, f"{scene} -time_step 1e-6 -time_end 1e-6 -scheme_startup euler -output_every 1 {TIGHT}")
     assert abs(run.series["gap"][-1] - 0.04) < 1e-3
     return run.saved("vesicle/velocity", "run.h5")[-1]

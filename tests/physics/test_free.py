@@ -4,6 +4,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import ROOT, run_petves
+from petves.curves import trigonometric
 from restarts import agree
 
 RATE = 0.326116
@@ -37,9 +38,7 @@ def test_ranks_and_restart(tmp_path):
 
 def fine(values, points):
     """Complex numbers round a curve, interpolated to more points."""
-    n = len(values)
-    wave = np.fft.fftfreq(n) * n
-    return np.exp(2j * np.pi * np.outer(np.arange(points) / points, wave)) @ np.fft.fft(values) / n
+    return trigonometric(np.column_stack([values.real, values.imag]), points) @ [1, 1j]
 
 
 def layer(X, F, z):

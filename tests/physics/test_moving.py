@@ -5,7 +5,7 @@ import h5py
 import numpy as np
 import pytest
 from boundary_integral import driven
-from harness import ROOT, run_petves
+from harness import ROOT, attribute, run_petves
 from restarts import frames
 from test_obstacles import PERIODIC, STILL, agree_with_solids, last
 
@@ -121,9 +121,8 @@ def test_blocks_are_renewed_beside_a_bump(tmp_path):
     its = whole["coupled_its"][2:]
     assert 1 in its and its.max() > 3
     run_petves(tmp_path / "half", f"{options} -time_end .3")
-    rest = run_petves(
-        tmp_path / "rest", f"{options} -time_end .6 -restart {tmp_path / 'half' / 'checkpoint.h5'}"
-    ).series
+    restart = f"-restart {tmp_path / 'half' / 'checkpoint.h5'}"
+    rest = run_petves(tmp_path / "rest", f"{options} -time_end .6 {restart}").series
     for name in ("obstacle_torque_1", "obstacle_force_x_2", "coupled_its"):
         np.testing.assert_array_equal(rest[name], whole[name][-len(rest[name]) :])
 
@@ -174,21 +173,20 @@ def test_files_have_the_body_where_it_is(tmp_path):
     np.testing.assert_allclose(shift, np.array([0, 2, 2])[:, None, None] * [1, 0] + 0 * shift, atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    "posts, step",
-    [
-        ("-obstacle_radius .25 -obstacle_center .3,.4,1.2,.4 -obstacle_velocity 1,0,0,0", "obstacles 1 and 2 run into"),
-        ("-obstacle_radius .25 -obstacle_center 1,.4 -obstacle_velocity 0,-1 -domain_bc_y wall", "the wall y_min"),
-    ],
-)
+TOUCH = {
+    "-obstacle_radius .25 -obstacle_center .3,.4,1.2,.4 -obstacle_velocity 1,0,0,0": "obstacles 1 and 2 run into",
+    "-obstacle_radius .25 -obstacle_center 1,.4 -obstacle_velocity 0,-1 -domain_bc_y wall": "the wall y_min",
+}
+
+
+@pytest.mark.parametrize("posts", TOUCH)
 @pytest.mark.parametrize("adapt", ["none", "error"])
-def test_bodies_stop_before_they_touch(posts, step, adapt, tmp_path):
+def test_bodies_stop_before_they_touch(posts, adapt, tmp_path):
     """With the reason, at the last good state, from which the body has come to less than a step's way of the other."""
     options = f"{VESICLE} -time_step .02 -time_end 1 -time_adapt {adapt} -obstacle_shape posts -obstacle_moving {posts}"
     run = run_petves(tmp_path, options, good=False)
-    assert step in run.errors[-1] and "the last good state is in" in run.errors[-1]
-    with h5py.File(tmp_path / "checkpoint.h5") as file:
-        t = float(np.ravel(file.attrs["time"])[0])
+    assert TOUCH[posts] in run.errors[-1] and "the last good state is in" in run.errors[-1]
+    t = attribute(tmp_path / "checkpoint.h5", "time")
     gap = 0.4 - t if "1,0,0,0" in posts else 0.15 - t
     assert 0 < gap < 0.04
 

@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ET
 import h5py
 import numpy as np
 import pytest
-from harness import read_series, run_petves, start, wait_for_rows
+from harness import attribute, read_series, run_petves, start, wait_for_rows
 
 import petves
 from petves.run import Run as Files
@@ -55,13 +55,9 @@ def test_bending_of_each(tmp_path):
     assert one["center_x_1"] == pytest.approx(-two["center_x_2"], abs=1e-9)
 
 
-MANY = (
-    "-scheme_type split -domain_box 0,9,0,6 -domain_cells 96,64 -domain_bc_x periodic -flow_type shear -flow_center_y 3"
-)
-MANY += (
-    " -vesicle_packing .25 -vesicle_packing_type lattice -vesicle_angle 30 -vesicle_count 42 -vesicle_reduced_area .8"
-)
-MANY += " -time_step .01 -output_every .02 -checkpoint_every 2"
+MANY = "-scheme_type split -domain_box 0,9,0,6 -domain_cells 96,64 -domain_bc_x periodic -flow_type shear"
+MANY += " -flow_center_y 3 -vesicle_packing .25 -vesicle_packing_type lattice -vesicle_angle 30 -vesicle_count 42"
+MANY += " -vesicle_reduced_area .8 -time_step .01 -output_every .02 -checkpoint_every 2"
 
 
 def rows(folder):
@@ -101,10 +97,8 @@ def test_gap_of_each(tmp_path):
     """Circles of radius 1/4: the first two .1 apart, the third .2 from the second over the seam, the fourth .15 from a wall,
     the fifth far from all."""
     scene = f"-domain_box 0,6,0,4 -domain_cells 60,40 -domain_bc_x periodic -vesicle_semi_axes .25,.25 "
-    scene += (
-        "-vesicle_count 5 -vesicle_center 5,2,5.6,2,.3,2,2,.4,3,3 -vesicle_markers 25 -vesicle_allow_close_markers "
-    )
-    run = run_petves(tmp_path / "run", scene + "-time_end 0")
+    scene += "-vesicle_count 5 -vesicle_center 5,2,5.6,2,.3,2,2,.4,3,3 -vesicle_markers 25 -vesicle_allow_close_markers"
+    run = run_petves(tmp_path / "run", f"{scene} -time_end 0")
     gaps = [run.series[f"gap_{v}"][0] for v in range(1, 6)]
     np.testing.assert_allclose(gaps, (0.1, 0.1, 0.2, 0.15, np.nan), atol=2e-3)
     assert petves.load(run.folder)["gap_5"].attrs["units"] == "length"
@@ -187,8 +181,7 @@ def test_killed_run_has_its_rows(whole, tmp_path):
     wait_for_rows(folder, 3)
     process.kill()
     assert process.wait() == -signal.SIGKILL
-    with h5py.File(folder / "checkpoint.h5") as file:
-        last = int(file.attrs["step"])
+    last = int(attribute(folder / "checkpoint.h5"))
     good = (folder / "vesicles.h5").read_bytes()
     bad = bytearray(len(good))
     for line in (folder / "vesicles.h5.index").read_text().splitlines():

@@ -4,13 +4,12 @@ not the run's own is refused."""
 import json
 import random
 import shutil
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from harness import run_petves
-from refusals import refused
+from refusals import refused, seal
 from restarts import SCHEMES, N, at_step, frames, same_frames, without_wall
 
 pytestmark = pytest.mark.xdist_group("restart")  # its tests share runs
@@ -135,14 +134,6 @@ def test_the_end_of_a_long_list_is_compared(tmp_path):
     scene += f"{','.join(places)} -restart {tmp_path}/run/checkpoint.h5"
     needles = "-obstacle_center ...,3.75:", "has ...,3.85", "allowed: the same value"
     refused(tmp_path / "new", scene, *needles, ranks=2)
-
-
-def seal(path: Path):
-    """Give a checkpoint that was edited its checksum back."""
-    import zlib
-
-    data = path.read_bytes()
-    path.write_bytes(data + b"petves checkpoint, crc32 %08x\n" % zlib.crc32(data))
 
 
 def test_another_format_is_refused(straight, tmp_path):

@@ -4,11 +4,10 @@ import csv
 import json
 import os
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
-from harness import ENVIRONMENT, PETVES, read_series, run_tool
+from harness import ENVIRONMENT, PETVES, read_series, run_tool, wait_for
 from restarts import without_wall
 
 from petves.sweeps import _name
@@ -108,8 +107,7 @@ def test_runs_without_a_checkpoint_are_moved_aside(sweep, tmp_path):
     home = tmp_path / "grid" / "checkpoint_every=0"
     live = [PETVES, *SHARED.split(), "-checkpoint_every", "0", "-time_end", "1000", "-output_dir", str(home)]
     process = subprocess.Popen(live, env={**os.environ, **ENVIRONMENT}, stdout=subprocess.DEVNULL)
-    while not (home / "run.xmf").exists():
-        time.sleep(0.01)
+    wait_for((home / "run.xmf").exists)
     status, lines, _ = sweep("checkpoint_every", "0")
     assert status == 1 and f"in use by process {process.pid}" in lines[0] and process.poll() is None, lines
     process.kill()

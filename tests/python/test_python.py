@@ -4,7 +4,7 @@ import json
 import subprocess
 
 import pytest
-from harness import PETVES, ROOT, SANITIZE, mpirun, run_python, without_mpirun
+from harness import PETVES, ROOT, SANITIZE, mpirun, run_python, simulation, without_mpirun
 from restarts import without_wall
 
 SCRIPTS = ROOT / "tests" / "python"
@@ -99,10 +99,8 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         options = SCENES[scene]
         done = mpirun([PETVES, *options.split(), "-output_dir", str(tmp_path / "program")], ranks)
         assert done.returncode == 0, done.stderr
-        words = dict(zip(options.split()[::2], options.split()[1::2]))
-        call = ", ".join(f"{name[1:]}={value!r}" for name, value in words.items())
         script = tmp_path / "script.py"
-        code = f"import petves\nwith petves.Simulation(output_dir={str(tmp_path / 'python')!r}, {call}) as sim:\n"
+        code = f"import petves\nwith {simulation(options, output_dir=tmp_path / 'python')} as sim:\n"
         script.write_text(code + "    sim.run(callback=lambda s: s.markers.sum())\n")
         done = run_python(script, ranks=ranks)
         assert done.returncode == 0 and not done.stdout and not without_mpirun(done.stderr), done.stderr

@@ -13,7 +13,7 @@ import tempfile
 
 import petves
 import pytest
-from harness import ENVIRONMENT, LIBRARY, ROOT, SANITIZE, mpirun, run_petves, without_mpirun
+from harness import ENVIRONMENT, LIBRARY, PACKAGE, ROOT, SANITIZE, mpirun, run_petves, without_mpirun
 
 EXAMPLES = sorted(path.stem for path in (ROOT / "python" / "examples").glob("*.py") if path.stem != "common")
 LEFT = {"quick_start": "quick_start/shapes.png", "restart": "halves/series.csv"}
@@ -84,16 +84,14 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
     def test_example_runs(name, tmp_path):
         ranks = 2 if name == "quick_start" else 1
         script = str(ROOT / "python" / "examples" / f"{name}.py")
-        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY))
-        done = mpirun([sys.executable, script, str(tmp_path), "--short"], ranks, **paths)
+        done = mpirun([sys.executable, script, str(tmp_path), "--short"], ranks, **PACKAGE)
         assert done.returncode == 0, done.stdout + done.stderr
         assert not without_mpirun(done.stderr)
         assert (tmp_path / LEFT.get(name, f"{name}.png")).stat().st_size > 1000
 
     def test_a_simulation_says_what_it_is_and_takes_no_attributes():
-        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY=str(LIBRARY))
         with tempfile.TemporaryDirectory() as folder:
-            done = python(["-c", f"import os\nos.chdir({folder!r})\n{SAYS}"], **paths)
+            done = python(["-c", f"import os\nos.chdir({folder!r})\n{SAYS}"], **PACKAGE)
         scene = "<petves.Simulation: 1 vesicle in shear, 24 x 24 cells, wall in x, wall in y, "
         refused = ": a simulation has no attribute to set; options are given when it is made"
         expected = [f"{scene}t = 0.02 of 0.02, out>", f"foo{refused}", f"time{refused}", f"{scene}closed, out>"]
@@ -181,6 +179,5 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert first == "2 6" and last.startswith("petsc4py is not installed, which simulating needs; "), done.stderr
 
     def test_missing_library_is_one_line():
-        paths = dict(PYTHONPATH=str(ROOT / "python"), PETVES_LIBRARY="/nowhere/libpetves.so")
-        done = python(["-c", NO_LIBRARY], **paths)
+        done = python(["-c", NO_LIBRARY], **PACKAGE | {"PETVES_LIBRARY": "/nowhere/libpetves.so"})
         assert done.stdout == "libpetves.so: not found in /nowhere; run make, or set PETVES_LIBRARY\n", done.stderr

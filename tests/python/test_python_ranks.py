@@ -3,9 +3,8 @@
 import csv
 from pathlib import Path
 
-import h5py
 import pytest
-from harness import LIBRARY, ROOT, SANITIZE, mpirun
+from harness import PACKAGE, ROOT, SANITIZE, attribute, mpirun
 from refusals import matches
 
 TIMEOUT = 60
@@ -26,16 +25,10 @@ def run_script(tmp_path: Path, body: str, ranks: int):
     """Run a script on some ranks; returns the finished process, and what each rank tells, in the order of the ranks."""
     script = tmp_path / "script.py"
     script.write_text(HEAD + body)
-    paths = {"PETVES_LIBRARY": str(LIBRARY), "PYTHONPATH": f"{ROOT}/python"}
     command, clock = ["/usr/bin/python3", str(script), str(tmp_path / "run")], ("--timeout", str(TIMEOUT))
-    done = mpirun(command, ranks, 2 * TIMEOUT, clock, **paths)
+    done = mpirun(command, ranks, 2 * TIMEOUT, clock, **PACKAGE)
     assert "Timeout" not in done.stderr and "time limit" not in done.stderr, f"it hangs\n{done.stdout}{done.stderr}"
     return done, [line.split(maxsplit=1)[1] for line in sorted(done.stdout.splitlines())]
-
-
-def last_good_step(tmp_path: Path) -> int:
-    with h5py.File(tmp_path / "run" / "checkpoint.h5") as file:
-        return file.attrs["step"]
 
 
 if not SANITIZE:  # a sanitized library cannot be loaded into Python
@@ -69,7 +62,7 @@ with petves.Simulation(**SCENE) as sim:
         done, told = run_script(tmp_path, body, ranks)
         assert done.returncode == 0, done.stderr
         assert told == ["Error the callback raised an exception on another rank"] * (ranks - 1) + ["ValueError mine"]
-        assert last_good_step(tmp_path) == 3
+        assert attribute(tmp_path / "run" / "checkpoint.h5") == 3
 
     def test_an_exception_that_nobody_catches_ends_the_program(tmp_path):
         body = """
@@ -81,7 +74,7 @@ with petves.Simulation(**SCENE) as sim:
 """
         done, _ = run_script(tmp_path, body, 2)
         assert done.returncode == 1 and ("ValueError: mine" in done.stderr or "another rank" in done.stderr)
-        assert last_good_step(tmp_path) == 3
+        assert attribute(tmp_path / "run" / "checkpoint.h5") == 3
 
     @pytest.mark.parametrize("ranks", [3])
     @pytest.mark.parametrize("fault, what", [("raise KeyError('flow')", "KeyError"), ("u = u + np.nan", "Error")])
@@ -130,7 +123,7 @@ with petves.Simulation(flow=flow, **SCENE | TWO) as sim:
         for line in told[: 1 if raised else 2]:
             kind, steps, message = line.split(maxsplit=2)
             assert (kind, steps) == ("Error", "3") and matches(pattern, message), line
-        assert last_good_step(tmp_path) == 3
+        assert attribute(tmp_path / "run" / "checkpoint.h5") == 3
 
     @pytest.mark.parametrize("caught", ["with", "later", "C"])
     def test_an_error_of_one_rank_between_steps_ends_all(caught, tmp_path):

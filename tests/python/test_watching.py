@@ -6,7 +6,7 @@ import subprocess
 import time
 
 import pytest
-from harness import ENVIRONMENT, PETVES, SANITIZE
+from harness import ENVIRONMENT, PETVES, SANITIZE, wait_for
 
 import petves
 from petves.views.watch import goes_on
@@ -22,8 +22,7 @@ def test_a_page_follows_a_run_to_its_end(tmp_path, monkeypatch):
     words = [PETVES, *SCENE.split(), "-output_dir", str(folder)]
     run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
     try:
-        while not (folder / "run.lock").exists():
-            time.sleep(0.05)
+        wait_for((folder / "run.lock").exists)
         real = time.sleep
 
         def pause(seconds):

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Iterator, NamedTuple
 
 import pytest
-from harness import ENVIRONMENT, LIBRARY, PETVES, ROOT, SANITIZE
+from harness import ENVIRONMENT, PACKAGE, PETVES, ROOT, SANITIZE
 
 INDEX = (ROOT / "docs" / "pages.md").read_text()
 HOW_TO = re.findall(r"\((\w+\.md)\)", INDEX.split("## How to")[1].split("\n## ")[0])
@@ -88,7 +88,7 @@ def clone(tmp_path, monkeypatch):
     (tmp_path / "runs").symlink_to(ROOT / "runs")
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin" / "petves").symlink_to(Path(PETVES).resolve())
-    for name, value in {**ENVIRONMENT, "PYTHONPATH": str(ROOT / "python"), "PETVES_LIBRARY": str(LIBRARY)}.items():
+    for name, value in {**ENVIRONMENT, **PACKAGE}.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
     monkeypatch.chdir(tmp_path)

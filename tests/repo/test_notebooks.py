@@ -4,7 +4,7 @@
 import nbformat
 import notebooks
 import pytest
-from harness import ENVIRONMENT, LIBRARY, PETVES, ROOT, SANITIZE
+from harness import ENVIRONMENT, PACKAGE, PETVES, ROOT, SANITIZE
 from test_newcomer import prints
 
 
@@ -21,9 +21,8 @@ def shown(cell: nbformat.NotebookNode) -> int:
 @pytest.mark.skipif(SANITIZE, reason="a sanitized library cannot be loaded into Python")
 @pytest.mark.parametrize("name", notebooks.NAMES)
 def test_stored_outputs_are_todays(name, tmp_path, monkeypatch):
-    for variable, value in {**ENVIRONMENT, "PYTHONPATH": str(ROOT / "python"), "PETVES_LIBRARY": str(LIBRARY)}.items():
+    for variable, value in {**ENVIRONMENT, **PACKAGE, "PETVES": PETVES}.items():
         monkeypatch.setenv(variable, value)
-    monkeypatch.setenv("PETVES", PETVES)
     stored = nbformat.read(ROOT / "docs" / f"{name}.ipynb", as_version=4).cells
     today = notebooks.executed(name, tmp_path).cells
     assert sum(bool(printed(cell)) for cell in stored) >= 2 and sum(map(shown, stored)) >= 1

@@ -3,13 +3,12 @@
 import os
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from harness import ENVIRONMENT, PETVES, read_series, run_petves
+from harness import ENVIRONMENT, PETVES, read_series, run_petves, wait_for
 from test_forged import external_link, external_storage, soft_link, virtual
 
 import petves
@@ -62,8 +61,7 @@ def test_run_that_goes_on_and_is_killed(tmp_path):
     words, environment = [PETVES, *options, "-output_dir", folder], {**os.environ, **ENVIRONMENT}
     process = subprocess.Popen(words, env=environment, stdout=subprocess.DEVNULL)
     found, sizes = [], set()
-    while not (folder / "run.xmf").exists():
-        time.sleep(0.01)
+    wait_for((folder / "run.xmf").exists)
     while len(found) < 60:
         found.append(petves.load(folder, "numpy"))
         text = (folder / "series.csv").read_text()

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import h5py
 import pytest
-from harness import PAPER, PETVES, SANITIZE, read_series, run_petves, run_python, start, wait_for_rows
+from harness import PAPER, PETVES, SANITIZE, attribute, read_series, run_petves, run_python, simulation, start
+from harness import wait_for_rows
 from refusals import one_line
 from restarts import BASE, same_frames, without_wall
 
@@ -26,8 +27,7 @@ def test_signals_stop_the_run_after_a_step(ranks, name, tmp_path):
     summary = json.loads((folder / "summary.json").read_text())
     last = int(read_series(folder / "series.csv")["step"][-1])
     assert summary["reason"] == "stopped" and summary["totals"]["steps"] == last
-    with h5py.File(folder / "checkpoint.h5") as file:
-        assert file.attrs["step"] == last
+    assert attribute(folder / "checkpoint.h5") == last
     end = f"-time_end {0.02 * (last + 3)}"
     run_petves(folder, f"{options} {end} -restart {folder}/checkpoint.h5", ranks)
     whole = run_petves(tmp_path / "whole", f"{options} {end}", ranks)
@@ -127,12 +127,9 @@ def test_killed_run_with_broken_tables(ranks, tmp_path):
 def test_broken_tables_after_an_end_that_was_not_the_end(tmp_path):
     """From Python a run goes on after its end: the frame of that end, at no saved time, is written over. Then it is
     killed."""
-    options = f"{BASE} -domain_cells 24,24 -output_every 0.04 -checkpoint_every 1".split()
-    words = dict(zip(options[::2], options[1::2])) | {"-time_end": "0.06", "-output_dir": str(tmp_path / "run")}
-    call = ", ".join(f"{name[1:]}={value!r}" for name, value in words.items())
-    code = (
-        f"import os, petves\nsim = petves.Simulation({call})\nsim.run()\nsim.run(until=0.22)\nos.kill(os.getpid(), 9)\n"
-    )
+    options = f"{BASE} -domain_cells 24,24 -output_every 0.04 -checkpoint_every 1 -time_end 0.06"
+    call = simulation(options, output_dir=tmp_path / "run")
+    code = f"import os, petves\nsim = {call}\nsim.run()\nsim.run(until=0.22)\nos.kill(os.getpid(), 9)\n"
     (tmp_path / "script.py").write_text(code)
     done = run_python(tmp_path / "script.py")
     assert done.returncode == -signal.SIGKILL, done.stderr
@@ -170,8 +167,7 @@ def test_full_disk(kib, ranks, small_disk, tmp_path):
     run = run_petves(folder, f"{BASE} -time_end 9 -output_every 0.02 -checkpoint_every 2", ranks, False)
     one_line(run, str(folder), "cannot be written", "allowed")
     for path in folder.glob("checkpoint*"):
-        with h5py.File(path) as file:
-            step = file.attrs["step"]
+        step = attribute(path)
         again = run_petves(tmp_path / path.stem, f"{BASE} -restart {path} -time_end {0.02 * (step + 1)}")
         assert again.series["step"][0] == step and len(again.series["step"]) == 2
     assert kib < 600 or (folder / "checkpoint.h5").exists()

@@ -9,11 +9,11 @@ import signal
 import subprocess
 from pathlib import Path
 
-import h5py
 import harness
 import pytest
 from double_starts import KINDS, double_start
-from harness import PETVES, SANITIZE, mpirun, preloaded, read_series, run_petves, run_python, wait_for, without_mpirun
+from harness import PETVES, SANITIZE, attribute, mpirun, preloaded, read_series, run_petves, run_python, simulation
+from harness import wait_for, without_mpirun
 from refusals import refused
 from restarts import without_wall
 
@@ -38,8 +38,7 @@ def ends_with_line(process: subprocess.Popen, *needles: str) -> None:
 
 def goes_on(folder: Path) -> None:
     """A restart goes on after the rows that its checkpoint counts."""
-    with h5py.File(folder / "checkpoint.h5") as file:
-        step = int(file.attrs["step"])
+    step = int(attribute(folder / "checkpoint.h5"))
     rows = (folder / "series.csv").read_text().splitlines()[: step + 2]
     run = run_petves(folder, f"{SCENE} -time_end {0.02 * (step + 5)} -restart {folder}/checkpoint.h5")
     assert step > 0 and run.series["step"].tolist() == list(range(step + 6))
@@ -215,9 +214,7 @@ print(sim.run(callback=wait))
 @pytest.mark.parametrize("pauses, status", [((0, 0.1), 0), ((0, 1.2), -signal.SIGTERM)])
 def test_second_signal_ends_the_process(pauses, status, tmp_path):
     """A second later; one that comes sooner is the same request, which mpirun and the batch system both send."""
-    words = f"{SCENE}".split()
-    named = ", ".join(f"{name[1:]}={value!r}" for name, value in zip(words[::2], words[1::2]))
-    (tmp_path / "script.py").write_text(TWICE.format(simulation=f"petves.Simulation({named})", pauses=pauses))
+    (tmp_path / "script.py").write_text(TWICE.format(simulation=simulation(SCENE), pauses=pauses))
     done = run_python(tmp_path / "script.py", TMPDIR=str(tmp_path))
     assert done.returncode == status, done.stdout + done.stderr
     assert done.stdout.split() == ([] if status else ["stopped"])

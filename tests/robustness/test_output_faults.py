@@ -8,7 +8,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import PAPER, PETVES, SANITIZE, mpirun, preloaded, run_petves, run_python, without_mpirun
+from harness import PAPER, PETVES, SANITIZE, attribute, mpirun, preloaded, run_petves, run_python, simulation
+from harness import without_mpirun
 from restarts import without_wall
 
 pytestmark = pytest.mark.xdist_group("output_faults")  # its tests share runs
@@ -91,13 +92,6 @@ def test_close_that_fails_on_the_way(name, ranks, fault, tmp_path):
     meets(fault, f"{name}.tmp", tmp_path / "run", 0.04, ranks)
 
 
-def simulation(folder: Path, options: str) -> str:
-    """The call that makes a simulation in Python."""
-    words = options.split()
-    named = dict(zip(words[::2], words[1::2])) | {"-output_dir": str(folder)}
-    return "petves.Simulation(" + ", ".join(f"{name[1:]}={value!r}" for name, value in named.items()) + ")"
-
-
 #: No file may grow on rank 0 any more when a row is to be written: every rank has the same error, once.
 FULL = """
 import os, resource, signal, sys
@@ -133,11 +127,11 @@ def test_disk_that_is_full_from_python(call, times, steps, ranks, tmp_path):
     The checkpoint before it is good."""
     options = f"{SCENE} -time_end 0.2 -output_every {0.08 if times == 2 else 10} -checkpoint_every 2"
     folder, script = tmp_path / "run", tmp_path / "script.py"
-    script.write_text(FULL.format(simulation=simulation(folder, options), call=call, times=times, steps=steps))
+    made = simulation(options, output_dir=folder)
+    script.write_text(FULL.format(simulation=made, call=call, times=times, steps=steps))
     done = run_python(script, ranks=ranks)
     assert done.returncode == 0 and not without_mpirun(done.stderr), done.stdout + done.stderr
-    with h5py.File(folder / "checkpoint.h5") as file:
-        assert file.attrs["step"] == 2
+    assert attribute(folder / "checkpoint.h5") == 2
     again = run_petves(tmp_path / "again", f"{SCENE} -time_end 0.08 -restart {folder}/checkpoint.h5", ranks)
     assert again.series["step"].tolist() == [2, 3, 4]
 
@@ -169,7 +163,7 @@ def test_a_frame_costs_the_same_at_any_time(tmp_path):
     frames, out = 300, str(tmp_path / "counts.json")
     options = f"{PAPER} {SCENE} -domain_cells 16,16 -vesicle_semi_axes 0.4,0.4 -time_step 1e-3 -output_every 1e-3"
     script = tmp_path / "script.py"
-    call = simulation(tmp_path / "run", f"{options} -time_end 10 -checkpoint_every 0 -vesicle_spacing 1.75")
+    call = simulation(f"{options} -time_end 10 -checkpoint_every 0 -vesicle_spacing 1.75", output_dir=tmp_path / "run")
     script.write_text(COUNT.format(simulation=call, frames=frames, out=out))
     done = run_python(script)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -217,7 +211,7 @@ def test_run_xmf_after_a_restart(straight, tmp_path):
 def test_run_xmf_when_a_run_goes_on_after_its_end(straight, tmp_path):
     """From Python: the last frame of run.xmf is written over, also by a shorter text."""
     script = tmp_path / "script.py"
-    call = simulation(tmp_path / "run", f"{SCENE} -time_end 0.06")
+    call = simulation(f"{SCENE} -time_end 0.06", output_dir=tmp_path / "run")
     script.write_text(f"import petves\nsim = {call}\nsim.run()\nsim.run(until=0.12)\nsim.close()\n")
     done = run_python(script)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -45,6 +45,9 @@ ENVIRONMENT = {
 if SANITIZE:  # also programs that the package or a study starts
     os.environ.update({name: ENVIRONMENT[name] for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS")})
 
+#: Where this package and the library of the program under test are.
+PACKAGE = {"PETVES_LIBRARY": str(LIBRARY), "PYTHONPATH": str(ROOT / "python")}
+
 #: The paper's scheme; its discretisation follows from it. Tests start from the default scheme unless they say this.
 PAPER = "-scheme_type split"
 
@@ -79,8 +82,16 @@ def run_tool(*words, folder=None, **environment: str) -> subprocess.CompletedPro
 
 def run_python(script: Path, *words: str, ranks: int = 1, timeout: float = 300, **environment: str):
     """Run a Python script on some ranks, with this package and the library of the program under test."""
-    package = {"PETVES_LIBRARY": str(LIBRARY), "PYTHONPATH": str(ROOT / "python")}
-    return mpirun(["/usr/bin/python3", str(script), *words], ranks, timeout, **package, **environment)
+    return mpirun(["/usr/bin/python3", str(script), *words], ranks, timeout, **PACKAGE, **environment)
+
+
+def simulation(options: str, **more) -> str:
+    """The call in Python that makes a simulation of these options, a value each."""
+    words = options.split()
+    named = dict(zip((name[1:] for name in words[::2]), words[1::2])) | {
+        name: str(value) for name, value in more.items()
+    }
+    return f"petves.Simulation({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
 
 def preloaded(folder: Path, source: str, compiler: str = "gcc") -> str:
@@ -150,6 +161,12 @@ def run_petves(folder: Path, options: str | list, ranks: int = 1, good: bool = T
     if good:
         assert run.status == 0, f"petves {options}\n{done.stdout}\n{done.stderr}"
     return run
+
+
+def attribute(path: Path, name: str = "step"):
+    """Of a checkpoint, or of another HDF5 file."""
+    with h5py.File(path) as file:
+        return file.attrs[name]
 
 
 def start(folder: Path, options: str, ranks: int = 1, **streams) -> subprocess.Popen:

@@ -5,7 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from harness import run_petves
+from harness import attribute, run_petves
 
 BASE = "-domain_cells 32,32 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_step 0.02 -output_every 0.05"
 TWO = "-domain_box -1.5,1.5,-1.5,1.5 -domain_cells 48,48 -vesicle_semi_axes 0.2,0.4"
@@ -72,9 +72,8 @@ def same_state(one, two, tolerance, names=STATE):
 def at_step(folder: Path, step: int) -> str:
     """The name of the checkpoint of a step."""
     for path in folder.glob("checkpoint*.h5"):
-        with h5py.File(path) as file:
-            if file.attrs["step"] == step:
-                return path.name
+        if attribute(path) == step:
+            return path.name
     raise AssertionError(f"no checkpoint of step {step} in {folder}")
 
 
