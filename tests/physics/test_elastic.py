@@ -206,9 +206,8 @@ def test_memory_turns_a_shape_to_its_rest(tmp_path):
     """An ellipse whose memory is that of the ellipse turned by a third of its markers finds the shape again, without a gain of energy."""
     round_ = 2 * math.pi * (np.arange(200) / 200 + 1 / 3)
     np.savetxt(tmp_path / "rest.txt", np.c_[np.cos(round_), 0.4 * np.sin(round_)])
-    ellipse = (
-        f"{FREE} -vesicle_semi_axes 1,.4 -vesicle_bending 0.1 -membrane_memory 1 -membrane_rest {tmp_path}/rest.txt"
-    )
+    ellipse = f"{FREE} -vesicle_semi_axes 1,.4 -vesicle_bending 0.1"
+    ellipse += f" -membrane_memory 1 -membrane_rest {tmp_path}/rest.txt"
     for step in (0.02, 1):
         series = run_petves(tmp_path / str(step), f"{ellipse} -time_step {step} -time_end 60").series
         energy = series["energy_bending"]

@@ -33,12 +33,9 @@ def test_steady_shape_does_not_depend_on_the_step(reduced_area, chi, dt, tmp_pat
 
 def test_two_vesicles_and_walls(tmp_path):
     """A pair far apart in a channel, with other shapes: each has labels of its own; the angles are those of small steps."""
-    scene = (
-        "-domain_box -8,8,-2.5,2.5 -domain_cells 64,20 -domain_bc_x periodic -flow_type shear "
-        "-fluid_inertia none -vesicle_count 2 -vesicle_area 2.199114857512855,2.5 -vesicle_reduced_area 0.7,0.9 "
-        "-vesicle_center -4,0,4,0 -vesicle_angle 20,30 -vesicle_bending 0.5 -output_every 1e9 -checkpoint_every 0 "
-        "-time_end 12"
-    )
+    scene = "-domain_box -8,8,-2.5,2.5 -domain_cells 64,20 -domain_bc_x periodic -flow_type shear -fluid_inertia none"
+    scene += " -vesicle_count 2 -vesicle_area 2.199114857512855,2.5 -vesicle_reduced_area 0.7,0.9 -vesicle_angle 20,30"
+    scene += " -vesicle_center -4,0,4,0 -vesicle_bending 0.5 -output_every 1e9 -checkpoint_every 0 -time_end 12"
     coarse, fine = (run_petves(tmp_path / f"{dt}", f"{scene} -time_step {dt}").series for dt in (0.4, 0.05))
     for name in ("inclination", "frequency"):
         for one in (name, f"{name}_2"):

@@ -183,10 +183,8 @@ def test_box_that_is_the_question_stays(tmp_path):
 @pytest.mark.parametrize("inertia", ("none", "unsteady"))
 def test_grid_for_a_box(inertia, tmp_path):
     """The fewest square cells that are enough; with inertia more of them where a vesicle begins near a wall."""
-    scene = (
-        f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5 -vesicle_area 1"
-    )
-    scene += f" -fluid_inertia {inertia} -time_end 0"
+    scene = f"{QUIET} -domain_box 0,12,0,5 -domain_bc_x periodic -flow_type poiseuille -flow_center_y 2.5"
+    scene += f" -vesicle_area 1 -fluid_inertia {inertia} -time_end 0"
     cells = {}
     near = (1e-2, 0.5)
     for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), near, (1e-3, 0.6)):

@@ -70,9 +70,8 @@ def test_numbers_go_by_the_largest_vesicle(flow, power, name, tmp_path):
 def test_an_option_replaces_its_alternatives_of_a_file(words, found, tmp_path):
     """What is typed, and what a file says behind those that it includes; two of one source are refused."""
     inner, outer = tmp_path / "inner.opts", tmp_path / "outer.opts"
-    inner.write_text(
-        "-flow_type shear\n-flow_rate 2\n-vesicle_area 1\n-vesicle_reduced_area 0.7\n-vesicle_markers 45\n"
-    )
+    given = "-flow_type shear -flow_rate 2 -vesicle_area 1 -vesicle_reduced_area 0.7 -vesicle_markers 45"
+    inner.write_text(given.replace(" -", "\n-"))
     outer.write_text(f"-options_file {inner}\n" + words.replace(" -", "\n-"))
     for name, scene in (("typed", f"-options_file {inner} {words}"), ("file", f"-options_file {outer}")):
         given = run_petves(tmp_path / name, f"{scene} {SMALL} -time_end 0").resolved

@@ -45,10 +45,9 @@ def test_page_of_options_has_the_rows_of_the_table():
     page = (ROOT / "docs" / "options.md").read_text()
     assert len(described(PETVES)) > 60 and missing(PETVES, page) == []
     (row,) = re.findall(r"^\| `-time_step` .*$", page, re.MULTILINE)
-    assert missing(PETVES, page.replace(row, row.replace("0.01", "0.02"))) == [
-        f"docs/options.md lacks {row}",
-        f"docs/options.md has {row.replace('0.01', '0.02')}",
-    ]
+    other = row.replace("0.01", "0.02")
+    said = [f"docs/options.md lacks {row}", f"docs/options.md has {other}"]
+    assert missing(PETVES, page.replace(row, other)) == said
 
 
 def test_stub_has_the_options_of_the_table():
@@ -86,9 +85,8 @@ def test_help_of_a_word_that_no_name_has(word, found):
 @pytest.mark.parametrize("words", [["help"], ["-help"], ["help", "plot"], ["-help", "plot"]])
 def test_help_is_a_word_too(words):
     done = mpirun([PETVES, *words], 1)
-    assert done.returncode == 0 and done.stdout.startswith(
-        "usage: petves plot" if "plot" in words else "petves: vesicles and capsules"
-    )
+    first = "usage: petves plot" if "plot" in words else "petves: vesicles and capsules"
+    assert done.returncode == 0 and done.stdout.startswith(first)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -177,10 +175,8 @@ def test_tools_are_python_s(here):
 
 def test_a_tool_needs_no_python_path(here):
     done = mpirun([PETVES, "plot", "nowhere"], 1, PYTHONPATH="")
-    assert (
-        done.returncode == 1
-        and done.stderr == "petves: error: nowhere: no such folder; give the -output_dir of a run\n"
-    )
+    line = "petves: error: nowhere: no such folder; give the -output_dir of a run\n"
+    assert done.returncode == 1 and done.stderr == line
 
 
 def test_manual_has_every_option(tmp_path):
@@ -188,9 +184,8 @@ def test_manual_has_every_option(tmp_path):
     usage = mpirun([PETVES, "-help"], 1).stdout
     page = manual(options, usage, "petves 0")
     (tmp_path / "petves.1").write_text(page)
-    assert [name.replace("\\", "") for name in re.findall(r"^\.B (\S+)$", page, re.MULTILINE)] == [
-        o.name for o in options
-    ]
+    names = re.findall(r"^\.B (\S+)$", page.replace("\\", ""), re.MULTILINE)
+    assert names == [option.name for option in options]
     if shutil.which("groff"):
         words = ["groff", "-man", "-Tutf8", "-ww", str(tmp_path / "petves.1")]
         done = subprocess.run(words, capture_output=True, text=True, check=True)
@@ -213,17 +208,15 @@ def test_completion(words, offered, here):
     Path("out").mkdir()
     Path("petves.bash").write_text(completion(described(PETVES)))
     script = f"source petves.bash; COMP_WORDS=(petves {' '.join(words)}); COMP_CWORD={len(words)}; _petves"
-    done = subprocess.run(
-        ["bash", "-c", script + '; echo "${COMPREPLY[@]}"'], capture_output=True, text=True, check=True
-    )
+    script += '; echo "${COMPREPLY[@]}"'
+    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.split() == offered and not done.stderr
 
 
 def make_arch(*words: str, **environment: str) -> str:
     command = ["make", "-s", "-C", str(ROOT), "arch", *words]
-    return subprocess.run(
-        command, env={**ENVIRONMENT, "PATH": "/usr/bin:/bin", **environment}, capture_output=True, text=True, check=True
-    ).stdout.strip()
+    environment = {**ENVIRONMENT, "PATH": "/usr/bin:/bin", **environment}
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
 
 
 V2 = "cx16 lahf_lm popcnt sse4_1 sse4_2 ssse3"

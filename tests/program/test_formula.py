@@ -24,16 +24,16 @@ print("facts hold")
 """
 
 
-@pytest.mark.parametrize(
-    "flow, formula",
-    [
-        ("shear -flow_rate 1.5 -flow_center_y 0.1", ["-flow_u", "1.5 * (y - 0.1)"]),
-        ("extension -flow_rate -0.7", ["-flow_u", " -0.7*x", "-flow_v", "0.7*y"]),
-    ],
-)
-def test_the_built_in_flow(flow, formula, tmp_path):
+FLOWS = {
+    "shear -flow_rate 1.5 -flow_center_y 0.1": ["-flow_u", "1.5 * (y - 0.1)"],
+    "extension -flow_rate -0.7": ["-flow_u", " -0.7*x", "-flow_v", "0.7*y"],
+}
+
+
+@pytest.mark.parametrize("flow", FLOWS)
+def test_the_built_in_flow(flow, tmp_path):
     built_in = run_petves(tmp_path / "type", f"{SMALL} -fluid_inertia none -flow_type {flow}")
-    by_formula = run_petves(tmp_path / "formula", [*f"{SMALL} -fluid_inertia none".split(), *formula])
+    by_formula = run_petves(tmp_path / "formula", [*f"{SMALL} -fluid_inertia none".split(), *FLOWS[flow]])
     for name in ("vesicle/markers", "vesicle/tension", "fluid/u", "fluid/v"):
         expected = built_in.saved(name, "run.h5")
         assert np.abs(by_formula.saved(name, "run.h5") - expected).max() < 1e-12 * max(1, np.abs(expected).max()), name

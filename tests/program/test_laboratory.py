@@ -68,7 +68,6 @@ def test_scenes_of_an_installation_are_found(tmp_path):
     done = run_tool("scenes", folder=tmp_path, PYTHONPATH=str(site))
     assert "stirring" in done.stdout, done.stderr
     code = "from petves.program import scene_file; print(scene_file('stirring'))"
-    done = subprocess.run(
-        [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(site)}, capture_output=True, text=True
-    )
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
     assert done.stdout.strip() == str(tmp_path / "share" / "petves" / "runs" / "stirring.opts")

@@ -50,10 +50,8 @@ def test_a_vesicle_keeps_them(box, tmp_path):
     more = f"-tracer_file {tmp_path / 'points.txt'} -time_end 120 -output_every 20"
     found = frames(run_petves(tmp_path / "run", f"{SHEAR} {box} {more}").folder)
     for frame in range(1, len(found["time"])):
-        curve, places = (
-            trigonometric(found["vesicle/markers"][frame], 200 * n) @ [1, 1j],
-            found["tracers/points"][frame],
-        )
+        curve = trigonometric(found["vesicle/markers"][frame], 200 * n) @ [1, 1j]
+        places = found["tracers/points"][frame]
         on = np.abs(curve - (places[:n, 0] + 1j * places[:n, 1])[:, None]).min(axis=1)
         assert on.max() < (0.02 if "free" in box else 0.2) * 0.25
         assert inside(places[n:], curve[::20]).all()

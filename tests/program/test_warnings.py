@@ -50,21 +50,18 @@ def test_film_that_markers_do_not_resolve(kind, ranks, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "shape, dt",
-    [
-        ("0.9 -vesicle_angle 70 -vesicle_bending 1", 0.4),
-        ("0.7 -vesicle_angle -20 -vesicle_bending 0.1 -vesicle_markers 61", 0.4),
-    ],
+    "shape",
+    ["0.9 -vesicle_angle 70 -vesicle_bending 1", "0.7 -vesicle_angle -20 -vesicle_bending 0.1 -vesicle_markers 61"],
 )
-def test_step_too_large_for_what_moves(shape, dt, tmp_path):
+def test_step_too_large_for_what_moves(shape, tmp_path):
     """R0 = 1: markers are off by 3 to 8 % of it. With the step that is named there is no warning; nor with -time_adapt error."""
     reduced_area = float(shape.split()[0])
     options = f"{FREE} -flow_type shear -flow_rate 1 -vesicle_area {np.pi * reduced_area} -vesicle_reduced_area {shape} -time_end 4"
-    found = warnings(tmp_path / "run", f"{options} -time_step {dt}", 2)
+    found = warnings(tmp_path / "run", f"{options} -time_step 0.4", 2)
     assert len(found) == 1 and " R0 otherwise than the steps before foretold, in step " in found[0]
     assert float(re.search(r"a marker moved by (\S+) R0", found[0])[1]) > 0.02
     named = float(re.search(r"try -time_step (\S+),", found[0])[1])
-    assert 0.1 < named < dt
+    assert 0.1 < named < 0.4
     assert not warnings(tmp_path / "named", f"{options} -time_step {named}")
     assert not warnings(tmp_path / "adapt", f"{options} -time_step 0.1 -time_adapt error")
 

@@ -15,9 +15,8 @@ xarray = pytest.importorskip("xarray")
 pytestmark = pytest.mark.xdist_group("quantities")  # its tests share runs
 
 CHANNEL = "-domain_box 0,2,0,1 -domain_cells 64,32 -domain_bc_x periodic -flow_type poiseuille -flow_half_width 0.5"
-CHANNEL += (
-    " -flow_center_y 0.5 -flow_peak_velocity 3 -fluid_viscosity 2 -fluid_inertia none -time_step 0.01 -time_end 0.02"
-)
+CHANNEL += " -flow_center_y 0.5 -flow_peak_velocity 3 -fluid_viscosity 2 -fluid_inertia none -time_step 0.01"
+CHANNEL += " -time_end 0.02"
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +54,8 @@ def test_probes_are_bilinear_and_wrapped(channel):
 
 def test_pressure_falls_through_a_throat(cached_run):
     """The pressure that pictures show falls from one end of the period to the other by the column pressure_drop."""
-    throat = (
-        "-obstacle_shape constriction -obstacle_throat 0.5 -obstacle_length 1 -obstacle_center 1,0 -flow_drive flux"
-    )
+    throat = "-obstacle_shape constriction -obstacle_throat 0.5 -obstacle_length 1 -obstacle_center 1,0"
+    throat += " -flow_drive flux"
     run = petves.load(cached_run(f"{CHANNEL} -vesicle_shape none {throat}").folder, "numpy")
     data = petves.load(run.folder, "xarray")
     drop = run.series["pressure_drop"][-1]
@@ -70,9 +68,8 @@ def test_pressure_falls_through_a_throat(cached_run):
 def test_walls_hold_what_the_pressure_gradient_drives(cached_run, drive):
     """Past a vesicle, at every saved time: the shear stresses of both walls add up to -dp/dx H; more is needed for the flux of the
     channel without it."""
-    vesicle = (
-        "-vesicle_area 0.15 -vesicle_reduced_area 0.7 -vesicle_center 1,0.3 -vesicle_bending 0.1 -output_every 0.01"
-    )
+    vesicle = "-vesicle_area 0.15 -vesicle_reduced_area 0.7 -vesicle_center 1,0.3 -vesicle_bending 0.1"
+    vesicle += " -output_every 0.01"
     data = petves.load(cached_run(f"{CHANNEL} {vesicle} -flow_drive {drive}").folder, "xarray")
     walls = wall_shear_stress(data).mean("x")
     np.testing.assert_allclose(walls["bottom"] + walls["top"], -data["pressure_gradient"], rtol=2e-4)

@@ -11,9 +11,8 @@ from harness import ENVIRONMENT, PETVES, SANITIZE, wait_for
 import petves
 from petves.views.watch import goes_on
 
-SCENE = (
-    "-domain_cells 32,32 -flow_type shear -vesicle_semi_axes .4,.6 -time_step 0.001 -output_every 0.01 -time_end 1000"
-)
+SCENE = "-domain_cells 32,32 -flow_type shear -vesicle_semi_axes .4,.6 -time_step 0.001 -output_every 0.01"
+SCENE += " -time_end 1000"
 
 
 def test_a_page_follows_a_run_to_its_end(tmp_path, monkeypatch):

@@ -50,14 +50,8 @@ OWN = {
 #: PETSc's own options, with values that it takes or not.
 PETSC = ["-log_view", "-log_view gmres", "-log_view :/proc/none", "-malloc_debug maybe", "-malloc_debug", "-info /no/x"]
 PETSC += ["-coupled_ksp_view foo", "-options_left maybe", "-fp_trap x", "-prefix_push a_", "-prefix_pop"]
-PETSC += [
-    "-log_trace /no",
-    "-tension_ksp_max_it 1",
-    "-coupled_ksp_rtol 1",
-    "-bending_pc_type 1",
-    "-no_such 1",
-    "-coupled_pc_type lu",
-]
+PETSC += ["-log_trace /no", "-tension_ksp_max_it 1", "-coupled_ksp_rtol 1", "-bending_pc_type 1", "-no_such 1"]
+PETSC += ["-coupled_pc_type lu"]
 PETSC += ["-coupled_ksp_type nosuch", "-coupled_ksp_monitor", "-coupled_ksp_rtol abc", "-options_view", "-skip_petscrc"]
 
 
@@ -227,17 +221,10 @@ def start(case: Case, folder: Path) -> subprocess.Popen:
     for name, text in case.files.items():
         (folder / name).write_bytes(text)
     words = [word.replace("\0", "") for word in case.words]
-    return subprocess.Popen(
-        [*(["mpirun", "-n", str(case.ranks)] if case.ranks > 1 else []), PETVES, *words, "-output_dir", "out"],
-        env={**os.environ, **ENVIRONMENT, **case.environment},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-        preexec_fn=limits,
-        cwd=folder,
-    )
+    words = [*(["mpirun", "-n", str(case.ranks)] if case.ranks > 1 else []), PETVES, *words, "-output_dir", "out"]
+    streams = dict(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace")
+    environment = {**os.environ, **ENVIRONMENT, **case.environment}
+    return subprocess.Popen(words, env=environment, preexec_fn=limits, cwd=folder, **streams)
 
 
 def check(case: Case, folder: Path, tries: int = 3) -> str:
@@ -255,9 +242,7 @@ def check(case: Case, folder: Path, tries: int = 3) -> str:
         process.kill()
         process.communicate()
         return "hangs"
-    if (
-        "An error occurred in MPI_Init" in stderr and tries
-    ):  # of two that start in the same moment, before petves begins
+    if "An error occurred in MPI_Init" in stderr and tries:  # of two that start in the same moment
         return check(case, folder.with_name(folder.name + "+"), tries - 1)
     lines = without_mpirun(stderr) if case.ranks > 1 else stderr.splitlines()
     if process.returncode not in (0, 1, 2):

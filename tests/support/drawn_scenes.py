@@ -204,13 +204,11 @@ class Draw:
         if self.chance(0.45) and "scheme_auto" not in self.text:
             self.text |= {"membrane_derivative": derivative, "membrane_law": pick(["green", "neo_hookean", "hooke"])}
             modulus = tension * pick([3, 30, 1000])
-            self.numbers["membrane_stretching"] = np.array(
-                [modulus, *[modulus * pick([0, 1, 5]) for _ in range(count - 1)]]
-            )
+            moduli = [modulus, *(modulus * pick([0, 1, 5]) for _ in range(count - 1))]
+            self.numbers["membrane_stretching"] = np.array(moduli)
             self.numbers |= {"membrane_viscosity": R0 * nu} if self.chance(0.3) else {}
-            self.text |= (
-                {"membrane_moment": pick(["angle", "helfrich"])} if derivative != "fd" and self.chance(0.5) else {}
-            )
+            if derivative != "fd" and self.chance(0.5):
+                self.text["membrane_moment"] = pick(["angle", "helfrich"])
             self.text |= {"membrane_rest": "circle"} if self.chance(0.2) else {}
         if derivative != "fd" and self.chance(0.2):
             self.numbers["membrane_memory"] = np.array([pick([0, 0.5, 1]) for _ in range(count)])
@@ -218,10 +216,8 @@ class Draw:
             self.numbers["membrane_permeability"] = pick([0.01, 0.1]) * R0 / nu
             self.numbers["membrane_osmotic"] = bending / R0**3 * np.array([pick([0, 1, 3]), pick([0, 1])])
         if self.chance(0.2) and count > 1:
-            self.numbers |= {
-                "contact_potential": pick([0.1, 1]) * bending / R0**3,
-                "contact_potential_distance": R0 * pick([0.4, 1]),
-            }
+            self.numbers["contact_potential"] = pick([0.1, 1]) * bending / R0**3
+            self.numbers["contact_potential_distance"] = R0 * pick([0.4, 1])
             self.numbers |= {"contact_potential_exponents": np.array([6.5, 3])} if self.chance(0.3) else {}
 
     def flow(self, rate: float) -> str:

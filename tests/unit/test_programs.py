@@ -20,7 +20,8 @@ FEW = {"test_near_cells": 14, "test_nearfar": 11, "test_nearfield": 17}
 
 @pytest.mark.parametrize("name,ranks", [(name, ranks) for name in NAMES for ranks in RANKS.get(name, (1, 3))])
 def test_facts_hold(name, ranks, tmp_path):
-    done = mpirun([str(PROGRAMS / name)], ranks, PETVES_SCRATCH=str(tmp_path) + os.sep)
+    alone = {} if ranks > 1 else {"OMPI_MCA_mpi_yield_when_idle": "0"}  # what MUMPS sends to itself is there at once
+    done = mpirun([str(PROGRAMS / name)], ranks, PETVES_SCRATCH=str(tmp_path) + os.sep, **alone)
     facts = [line for line in done.stdout.splitlines() if line.startswith(("ok ", "not ok "))]
     wrong = [line for line in facts if line.startswith("not ok ")]
     assert not wrong, "\n".join(wrong)
@@ -30,11 +31,6 @@ def test_facts_hold(name, ranks, tmp_path):
 
 def test_lines_of_mpirun_are_dropped():
     """Its report between dashes, and what its event loop says of a process that has ended."""
-    lines = [
-        "[warn] Epoll MOD(1) on fd 24 failed. Old events were 6; read change was 2 (del): Bad file descriptor",
-        "petves: error: -time_step -1: out of range",
-        "-" * 70,
-        "mpirun has exited",
-        "-" * 70,
-    ]
-    assert without_mpirun("\n".join(lines)) == lines[1:2]
+    events = "[warn] Epoll MOD(1) on fd 24 failed. Old events were 6; read change was 2 (del): Bad file descriptor"
+    line, dashes = "petves: error: -time_step -1: out of range", "-" * 70
+    assert without_mpirun("\n".join([events, line, dashes, "mpirun has exited", dashes])) == [line]
