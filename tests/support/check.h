@@ -58,6 +58,23 @@ static inline PetscReal *TestReals(PetscInt n) {
   return x;
 }
 
+/* TestText - a text as of printf. TestScratch - the name of a scratch file. The end of the program frees them. */
+static inline const char *PETSC_ATTRIBUTE_FORMAT(1, 2) TestText(const char format[], ...) {
+  char text[2048], *kept;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof(text), format, arguments);
+  va_end(arguments);
+  TestCall(PetscStrallocpy(text, &kept));
+  TestKeep(kept, PETSC_FALSE);
+  return kept;
+}
+
+static inline const char *TestScratch(const char name[]) {
+  const char *folder = getenv("PETVES_SCRATCH");
+  return TestText("%s%s", folder ? folder : "/tmp/", name);
+}
+
 /* TestVecs - vectors like x, up to a NULL, which the end of the program destroys. */
 static inline void TestVecsLike(Vec x, va_list list) {
   for (Vec *y; (y = va_arg(list, Vec *));) {

@@ -75,9 +75,8 @@ void Facts(void) {
   static const char *const kernels[] = {"ib6", "cbs54"};
   for (int k = 0; k < 5; k++)
     for (int d = 0; d < 2; d++) {
-      char name[256];
       ScopedWorld t;
-      TestCall(PetscSNPrintf(name, sizeof(name), "%s -delta_type %s", scenes[k], kernels[d]));
+      const char *name = TestText("%s -delta_type %s", scenes[k], kernels[d]);
       TestWorldCreate(&t, "-domain_cells 60,60 %s", name);
       const PetscReal error = ChatError(&t);
       CHECK(error < 1e-12, "%s: Chat column by column, error %.1e", name, error);

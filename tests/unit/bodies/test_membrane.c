@@ -111,15 +111,13 @@ static void CheckReducedArea(void) {
 /* 40 unequal, clockwise points of an ellipse: the spline gives the ellipse back to h^4, equal edges, counter-clockwise.
  */
 static void CheckFile(void) {
-  char path[PETSC_MAX_PATH_LEN];
+  const char *path = TestScratch("curve.txt");
   const PetscReal a = 0.5, b = 0.3;
   PetscMPIInt rank;
   ScopedMembrane m;
   Measures got;
   PetscReal off = 0;
   TestCall(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  TestCall(PetscOptionsGetenv(PETSC_COMM_WORLD, "PETVES_SCRATCH", path, sizeof(path), NULL));
-  TestCall(PetscStrlcat(path, "curve.txt", sizeof(path)));
   if (!rank) {
     FILE *f = fopen(path, "w");
     PetscCheckAbort(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", path);

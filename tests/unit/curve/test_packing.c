@@ -56,10 +56,11 @@ static PetscReal Axes(PetscInt n, PetscBool mixed, PetscReal fraction, PetscReal
 
 static void CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, PetscReal fraction) {
   const PetscReal box = (s->box[1] - s->box[0]) * (s->box[3] - s->box[2]);
-  PetscReal *axes, *X, part, other, mean[2] = {0, 0}, same = 0, apart = 0;
+  PetscReal *axes = TestReals(2 * n), *X = TestReals(2 * n * POINTS), part, other, mean[2] = {0, 0}, same = 0,
+            apart = 0;
   PackingSpec again = *s;
   Pose *pose, *second;
-  TestCall(PetscMalloc4(2 * n, &axes, 2 * n * POINTS, &X, n, &pose, n, &second));
+  TestCall(PetscMalloc2(n, &pose, n, &second));
   (void)Axes(n, mixed, fraction, box, axes);
   TestCall(PackRandomly(s, n, axes, pose, &part));
   for (PetscInt i = 0; i < n; i++) {
@@ -80,7 +81,7 @@ static void CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, Petsc
   CHECK(PetscHypotReal(mean[0], mean[1]) < 5 / PetscSqrtReal(n), "their directions have the mean %.2g",
         PetscHypotReal(mean[0], mean[1]));
   CHECK(same == 0 && apart > 0.1 * (s->box[1] - s->box[0]), "the same seed gives the same, another one another");
-  TestCall(PetscFree4(axes, X, pose, second));
+  TestCall(PetscFree2(pose, second));
 }
 
 static void CheckLattice(void) {

@@ -59,7 +59,6 @@ static void CheckGrid(const Size *size, const char bc[], PetscBool hypre) {
   static const char fields[] = "uvp";
   Scene scene;
   Grid grid;
-  char options[512];
   TestScene(&scene, "-domain_box %s -domain_cells %s %s -vesicle_shape none", size->box, size->cells, bc);
   TestCall(GridCreate(&scene->fluid, &grid));
   for (int f = 0; f < 3; f++) {
@@ -68,8 +67,8 @@ static void CheckGrid(const Size *size, const char bc[], PetscBool hypre) {
     for (int k = 0; k < 4; k++)
       for (int q = 0; q < (hypre ? 3 : 2); q++) {
         PetscReal error, mean;
-        TestCall(PetscSNPrintf(options, sizeof(options), "%s %s, %c, %s: %s", size->cells, bc, fields[f],
-                               problems[k].name, back_ends[q].type));
+        const char *options = TestText("%s %s, %c, %s: %s", size->cells, bc, fields[f], problems[k].name,
+                                       back_ends[q].type);
         TestCall(FastSolverSetCoefficients(solver[q], problems[k].a0, problems[k].nu));
         if (q < 2) {
           error = Residual(solver[q], &mean);

@@ -226,10 +226,8 @@ static void CheckQuasiSteady(const char name[], const char options[]) {
   const char *const inertia[] = {"-fluid_inertia none", "-fluid_inertia unsteady"};
   Vec w[2], p[2], force;
   for (int k = 0; k < 2; k++) {
-    char all[256];
     ScopedWorld r;
-    TestCall(PetscSNPrintf(all, sizeof(all), "%s %s", options, inertia[k]));
-    RunCreate(all, 24, 1, &r);
+    RunCreate(TestText("%s %s", options, inertia[k]), 24, 1, &r);
     TestCall(FluidSetTimeCoefficient(r.fluid, 1e-7));
     if (!k) CHECK(r.fluid->alpha == 0 && r.fluid->a0 > 0, "%s: no inertia in quasi-steady flow", name);
     TestVecs(r.scheme->state.w, &force, &w[k], NULL);

@@ -68,7 +68,7 @@ static void CheckInPlace(const char name[], Stokes stokes, Fields *x) {
 
 static void CheckBox(const char grid[], const char bc[]) {
   static const PetscReal coefficients[] = {128, 0.75, 128};
-  char name[256];
+  const char *name = NULL;
   ScopedWorld box;
   Fields x;
   TestWorldCreate(&box, "%s %s -vesicle_shape none -fluid_viscosity 0.7", grid, bc);
@@ -78,8 +78,8 @@ static void CheckBox(const char grid[], const char bc[]) {
   for (int k = 0; k < 3; k++) { /* there and back: nothing of an earlier a0 may stay */
     TestCall(FluidSetTimeCoefficient(fluid, coefficients[k]));
     for (int with = 0; with < 2; with++) {
-      TestCall(PetscSNPrintf(name, sizeof(name), "%s %s a0 = %g%s", strstr(grid, "-domain_cells") + 14, bc,
-                             coefficients[k], with ? "" : ", r_p = 0"));
+      const char *cells = strstr(grid, "-domain_cells") + 14;
+      name = TestText("%s %s a0 = %g%s", cells, bc, coefficients[k], with ? "" : ", r_p = 0");
       CheckSolve(name, fluid, stokes, (PetscBool)with, PETSC_FALSE, &x);
       if (fluid->grid->wall[0]) CheckSolve(name, fluid, stokes, (PetscBool)with, PETSC_TRUE, &x);
     }

@@ -80,9 +80,8 @@ static void CheckSplines(void) {
   const Kernel *cbs54 = KernelFind("cbs54");
   CHECK(cbs54->along == KernelSpline5 && cbs54->across == KernelSpline4, "cbs54 has splines of 5 and 4 points");
   for (int i = 0; i < 3; i++) {
-    char name[16];
     PetscReal error = PetscAbsReal(Phi(splines[i], 0) - at0[i]);
-    TestCall(PetscSNPrintf(name, sizeof(name), "%d points", i + 4));
+    const char *name = TestText("%d points", i + 4);
     CheckSpline(name, splines[i], i + 4);
     for (int sign = -1; sign <= 1; sign += 2) error = PetscMax(error, PetscAbsReal(Phi(splines[i], sign) - at1[i]));
     CHECK(error < 1e-14, "%s: values at 0, 1 and -1, error %.1e", name, error);

@@ -114,17 +114,14 @@ PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
 /* A scene's run, all of whose solves agree to `within`. */
 static void Agrees(const char name[], PetscReal within, const char options[]) {
   static const char *const what[VECTORS] = {"velocity", "pressure", "tension", "markers' velocity", "obstacles' force"};
-  const char *scratch = getenv("PETVES_SCRATCH");
-  char folder[PETSC_MAX_PATH_LEN];
   PetscBool good;
   solves = iterations = 0;
   TestCall(PetscArrayzero(largest, VECTORS));
-  TestCall(PetscSNPrintf(folder, sizeof(folder), "%sdirect", scratch ? scratch : "/tmp/"));
   TestCall(PetscOptionsClear(NULL));
   TestCall(PetscOptionsInsertString(NULL, "-output_overwrite -allow_unused_options -vesicle_allow_close_markers "
                                           "-coupled_ksp_rtol 1e-12 -checkpoint_every 0"));
   TestCall(PetscOptionsInsertString(NULL, options));
-  TestCall(PetscOptionsSetValue(NULL, "-output_dir", folder));
+  TestCall(PetscOptionsSetValue(NULL, "-output_dir", TestScratch("direct")));
   TestCall(SimulationCreate(PETSC_COMM_WORLD, &run));
   TestCall(PetvesSetQuiet(PETSC_TRUE));
   TestCall(SimulationRun(run, &good));
@@ -149,14 +146,11 @@ static void PaperScenes(void) {
                                     " -domain_cells 32,32 -vesicle_center 0,0.9" SEAMS};
   static const char *const flow[] = {" -vesicle_angle 20", SHEAR};
   for (int k = 0; k < 12; k++) {
-    char name[64], options[512];
-    const int order = 1 + k % 2;
-    TestCall(PetscSNPrintf(name, sizeof(name), "box %d, %s, order %d", k / 4, k / 2 % 2 ? "shear" : "at rest", order));
-    TestCall(PetscSNPrintf(options, sizeof(options), "%s%s -scheme_order %d" PAPER STEPS, box[k / 4], flow[k / 2 % 2],
-                           order));
+    const int order = 1 + k % 2, shear = k / 2 % 2;
+    const char *name = TestText("box %d, %s, order %d", k / 4, shear ? "shear" : "at rest", order);
+    const char *options = TestText("%s%s -scheme_order %d" PAPER STEPS, box[k / 4], flow[shear], order);
     Agrees(name, 1e-9, options);
-    TestCall(PetscStrlcat(options, " -vesicle_bending 0", sizeof(options)));
-    if (k / 2 % 2) Agrees(name, 1e-9, options);
+    if (shear) Agrees(name, 1e-9, TestText("%s -vesicle_bending 0", options));
   }
 }
 
@@ -231,20 +225,17 @@ static const struct {
 
 /* A bump on a wall, with its foot half a cell from a corner of four walls. */
 static void BumpBesideCorner(void) {
-  const char *scratch = getenv("PETVES_SCRATCH");
-  char path[PETSC_MAX_PATH_LEN], options[2 * PETSC_MAX_PATH_LEN];
+  const char *path = TestScratch("bump.txt");
   FILE *file;
-  TestCall(PetscSNPrintf(path, sizeof(path), "%sbump.txt", scratch ? scratch : "/tmp/"));
   TestCall(PetscFOpen(PETSC_COMM_SELF, path, "w", &file));
   fprintf(file, "# open\n");
   for (int k = -40; k <= 40; k++)
     fprintf(file, "%.17g %.17g\n", 0.28 + k / 160., 0.15 * (1 + PetscCosReal(PETSC_PI * k / 40)));
   TestCall(PetscFClose(PETSC_COMM_SELF, file));
-  TestCall(PetscSNPrintf(options, sizeof(options),
-                         "-vesicle_shape none -time_step .01 -time_end .01 -domain_box 0,1,0,1 -domain_cells 16,16 "
-                         "-flow_type shear -obstacle_shape file -obstacle_file %s",
-                         path));
-  Agrees("bump beside a corner", 1e-7, options);
+  Agrees("bump beside a corner", 1e-7,
+         TestText("-vesicle_shape none -time_step .01 -time_end .01 -domain_box 0,1,0,1 -domain_cells 16,16 "
+                  "-flow_type shear -obstacle_shape file -obstacle_file %s",
+                  path));
 }
 
 void Facts(void) {

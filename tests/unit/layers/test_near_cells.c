@@ -146,10 +146,6 @@ void Facts(void) {
   CheckTable(&pressure);
   CheckAgainstGrid(&pressure);
   TestCall(OffsetTableDestroy(&pressure));
-  for (int k = 0; k < 4; k++) {
-    char options[1024];
-    TestCall(PetscSNPrintf(options, sizeof(options), "%s -delta_type %s %s", CIRCLE, kernels[k / 2], grids[k % 2]));
-    CheckCircle(options, 0);
-  }
+  for (int k = 0; k < 4; k++) CheckCircle(TestText(CIRCLE "-delta_type %s %s", kernels[k / 2], grids[k % 2]), 0);
   CheckCircle(CIRCLE "-delta_type cbs54 -domain_cells 64,64 -fluid_inertia unsteady -vesicle_markers 45", 100);
 }

@@ -95,10 +95,8 @@ static void CheckSums(const char name[], TestWorld *t) {
 
 static void CheckCase(const char grid[], const char bc[], const char vesicle[], const char delta[]) {
   ScopedWorld t;
-  char options[1024], name[256];
-  TestCall(PetscSNPrintf(options, sizeof(options), "%s %s %s -delta_type %s", grid, bc, vesicle, delta));
-  TestCall(PetscSNPrintf(name, sizeof(name), "%s %s %s", strstr(grid, "-domain_cells") + 14, bc, delta));
-  TestWorldCreate(&t, "%s", options);
+  const char *name = TestText("%s %s %s", strstr(grid, "-domain_cells") + 14, bc, delta);
+  TestWorldCreate(&t, "%s %s %s -delta_type %s", grid, bc, vesicle, delta);
   CheckFluid(name, t.fluid);
   CheckCoupling(name, &t);
   CheckSums(name, &t);

@@ -145,11 +145,9 @@ static void CheckList(const char name[], TestWorld *t) {
 }
 
 static void CheckCase(const char options[], const char vesicles[], const char delta[]) {
-  char all[1024], name[256];
   ScopedWorld t;
-  TestCall(PetscSNPrintf(all, sizeof(all), "%s %s -delta_type %s", options, vesicles, delta));
-  TestCall(PetscSNPrintf(name, sizeof(name), "%s %s", strstr(options, "-domain_cells") + 14, delta));
-  TestWorldCreate(&t, "%s", all);
+  const char *name = TestText("%s %s", strstr(options, "-domain_cells") + 14, delta);
+  TestWorldCreate(&t, "%s %s -delta_type %s", options, vesicles, delta);
   CHECK(t.layout->bodies == 5, "%s: five vesicles, %d markers in all", name, (int)t.layout->M);
   CheckInterpolation(name, &t);
   for (unsigned k = 0; k < 3; k++) CheckTranspose(name, &t, 31 + 2 * k);
@@ -159,7 +157,7 @@ static void CheckCase(const char options[], const char vesicles[], const char de
 /* MarkersCheck of marker 0 of one vesicle moved to (x, y): all ranks have the message, which names the vesicle and
    says `what`; what NULL: there is none. */
 static void CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal y, const char what[]) {
-  char message[PETVES_MAX_MESSAGE], who[64];
+  char message[PETVES_MAX_MESSAGE];
   const PetscScalar move[2] = {x, y};
   Vec X;
   TestVecs(t->X, &X, NULL);
@@ -168,7 +166,7 @@ static void CheckMessage(TestWorld *t, PetscInt vesicle, PetscReal x, PetscReal 
   for (int c = 0; c < 2 && LayoutOwner(t->layout, vesicle) == t->layout->rank; c++)
     a[2 * LayoutOffset(t->layout, vesicle) + c] = move[c];
   TestCall(MarkersCheck(t->coupling->markers, t->coupling->markers->layout, X, message));
-  TestCall(PetscSNPrintf(who, sizeof(who), "vesicle %" PetscInt_FMT ":", vesicle + 1));
+  const char *who = TestText("vesicle %d:", (int)vesicle + 1);
   CHECK(what ? strstr(message, who) && strstr(message, what) : !*message,
         "a marker of vesicle %d at (%g, %g), known on all ranks: %s", (int)vesicle + 1, x, y,
         *message ? message : "good");

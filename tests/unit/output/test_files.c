@@ -5,27 +5,21 @@
 #include "output/record.h"
 #include <stdlib.h>
 
-/* Name of a scratch file. */
-static void Scratch(const char name[], char path[PETSC_MAX_PATH_LEN]) {
-  const char *folder = getenv("PETVES_SCRATCH");
-  TestCall(PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s%s", folder ? folder : "/tmp/", name));
-}
-
 /* A text comes back on every rank, at lengths around those of the attributes that it is cut into. */
 static void CheckTexts(void) {
   const size_t lengths[] = {0, 1, 31999, 32000, 32001, 64000, 200000};
   const int n = sizeof(lengths) / sizeof(lengths[0]);
-  char path[PETSC_MAX_PATH_LEN], name[32], *text, *back;
+  const char *path = TestScratch("texts.h5");
+  char *text, *back;
   PetscBool failed;
   H5File file;
-  Scratch("texts.h5", path);
   TestCall(PetscMalloc1(lengths[n - 1] + 1, &text));
   for (int pass = 0; pass < 2; pass++) {
     TestCall(H5FileOpen(PETSC_COMM_WORLD, path, pass ? H5_READ : H5_NEW, &file));
     for (int k = 0; k < n; k++) {
       for (size_t i = 0; i < lengths[k]; i++) text[i] = (char)('a' + (i * i + 7 * i + (size_t)k) % 26);
       text[lengths[k]] = 0;
-      TestCall(PetscSNPrintf(name, sizeof(name), "text%d", k));
+      const char *name = TestText("text%d", k);
       if (!pass) {
         H5PutText(&file, name, text);
         continue;
@@ -53,15 +47,14 @@ static PetscInt Count(const char text[], char what) {
 static void CheckRows(PetscInt vesicles) {
   const PetscBool own = vesicles > 1 && vesicles <= 40 ? PETSC_TRUE : PETSC_FALSE;
   const PetscInt columns = COLUMN_COUNT + (own ? 15 * vesicles : 0);
-  char number[32], *text;
+  char *text;
   size_t used = 0;
   const SceneObstacles none = {0};
   Record record;
   TestCall(RecordCreate(vesicles, &none, &(struct _p_Forces){0}, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
-  TestCall(PetscSNPrintf(number, sizeof(number), "gap_%d", (int)vesicles));
-  CHECK(!strcmp(strrchr(record.header, ',') + 1, own ? number : "normal_stress"), "%d vesicles: the last column",
-        (int)vesicles);
+  const char *last = own ? TestText("gap_%d", (int)vesicles) : "normal_stress";
+  CHECK(!strcmp(strrchr(record.header, ',') + 1, last), "%d vesicles: the last column", (int)vesicles);
   TestCall(PetscMalloc1(32 * columns, &text));
   for (PetscInt c = 0; c < columns; c++)
     used += (size_t)snprintf(text + used, 32, "%s%.17g", c ? "," : "", -1.2345678901234567e-300 * (c + 1));
@@ -76,10 +69,9 @@ static void CheckRows(PetscInt vesicles) {
 /* The place of a frame is HDF5's own answer; asked after many frames, and of a file that was opened again. */
 static void CheckPlaces(void) {
   const PetscInt frames = 300, size[2] = {5, 7}, ask[] = {0, 1, 63, 64, 150, 299};
-  char path[PETSC_MAX_PATH_LEN];
+  const char *path = TestScratch("places.h5");
   PetscReal values[35], *read = values;
   H5File file;
-  Scratch("places.h5", path);
   TestCall(H5FileOpen(PETSC_COMM_WORLD, path, H5_NEW, &file));
   H5CreateSeries(&file, "/a/one", PETSC_FALSE, 2, size);
   H5CreateSeries(&file, "/a/two", PETSC_FALSE, 1, size);

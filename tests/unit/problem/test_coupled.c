@@ -146,14 +146,12 @@ static void CheckMobility(const char name[], Problem *q, PetscInt v) {
 /* With the near field: C is in the equations and in the preconditioner alike, and Mob of markers 14 h and more apart is
    smooth and interpolated. Largest difference from E A^-1 E^T over the largest entry, and iterations to 1e-8. */
 static void CheckNearField(const char box[], PetscReal a0, PetscReal most_error, PetscInt most_its) {
-  char options[512];
   Problem q;
-  TestCall(
-      PetscSNPrintf(options, sizeof(options),
-                    "-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -vesicle_markers 45 "
-                    "-domain_cells 64,64 -vesicle_semi_axes 0.3,0.6 -vesicle_bending 10 -coupled_ksp_rtol 1e-8 %s",
-                    box));
-  ProblemCreate(options, a0, &q);
+  ProblemCreate(
+      TestText("-delta_type cbs54 -membrane_derivative spectral -coupling_near_field exact -vesicle_markers 45 "
+               "-domain_cells 64,64 -vesicle_semi_axes 0.3,0.6 -vesicle_bending 10 -coupled_ksp_rtol 1e-8 %s",
+               box),
+      a0, &q);
   SolveProblem(box, &q, PETSC_FALSE);
   CHECK(q.its <= most_its, "%s, a0 = %g: %d iterations", box, a0, (int)q.its);
   if (q.s->preconditioner->mobility && !q.t.fluid->grid->free) {
@@ -169,12 +167,8 @@ static void CheckNearField(const char box[], PetscReal a0, PetscReal most_error,
 
 static void CheckCase(const char options[], PetscReal a0, PetscBool periodic) {
   Problem q;
-  char name[256], all[512];
-  TestCall(PetscSNPrintf(name, sizeof(name), "%.*s a0 = %g", (int)strcspn(strstr(options, "-domain_cells") + 14, ";"),
-                         strstr(options, "-domain_cells") + 14, a0));
-  TestCall(PetscSNPrintf(all, sizeof(all), "%s -coupled_ksp_rtol 1e-12 %s", options,
-                         periodic ? "-domain_bc_x periodic -domain_bc_y periodic" : ""));
-  ProblemCreate(all, a0, &q);
+  const char *name = TestText("%s a0 = %g", strstr(options, "-domain_cells") + 14, a0);
+  ProblemCreate(TestText("%s -coupled_ksp_rtol 1e-12 %s", options, periodic ? PERIODIC : ""), a0, &q);
   CheckBending(name, &q);
   CheckSolution(name, &q, PETSC_FALSE);
   CheckSolution(name, &q, PETSC_TRUE);

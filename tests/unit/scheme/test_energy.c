@@ -119,19 +119,17 @@ static const struct {
                  {NEAR "-delta_type cbs54 -membrane_derivative bending ", 1e-11}};
 
 static void CheckCorrected(PetscReal bending, PetscReal dt, PetscBool more) {
-  char scheme[512];
   for (int order = 1; order <= 2; order++) {
     for (int k = 0; k < (few || !more ? 1 : 4); k++) {
       const PetscReal most = bending == 100 ? corrected[k].stiff : 1e-11;
-      TestCall(PetscSNPrintf(scheme, sizeof(scheme), "%s%s", corrected[k].options,
-                             order == 1 ? ORDER_1 TIGHT : ORDER_2 TIGHT));
+      const char *scheme = TestText("%s%s", corrected[k].options, order == 1 ? ORDER_1 TIGHT : ORDER_2 TIGHT);
       CheckLaw(scheme, bending, dt, most);
     }
     if (few || !more) continue;
     for (int area = 0; area < 2; area++) { /* what the targets do to the energy, reported; it stays below its start */
-      TestCall(PetscSNPrintf(scheme, sizeof(scheme),
-                             "%s-scheme_length_target %s -scheme_order %d -scheme_startup euler", corrected[0].options,
-                             area ? "true" : "false", order));
+      const char *target = area ? "true" : "false";
+      const char *scheme = TestText("%s-scheme_length_target %s -scheme_order %d -scheme_startup euler",
+                                    corrected[0].options, target, order);
       area_target = PETSC_TRUE;
       const Law law = Sweep(scheme, bending, dt);
       area_target = PETSC_FALSE;

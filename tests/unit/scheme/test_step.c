@@ -89,9 +89,7 @@ static void CheckFormula(const char options[], PetscReal dt, PetscBool turns, in
 void Facts(void) {
   for (int k = 0; k < 27; k++) {
     static const PetscReal bending[] = {0.1, 0.3, 1}, dt[] = {0.125, 0.1, 0.08};
-    char options[512];
-    TestCall(PetscSNPrintf(options, sizeof(options), SHEAR "-vesicle_bending %g", bending[k / 9]));
-    CheckFormula(options, dt[k / 3 % 3], PETSC_TRUE, 1 + k % 3);
+    CheckFormula(TestText(SHEAR "-vesicle_bending %g", bending[k / 9]), dt[k / 3 % 3], PETSC_TRUE, 1 + k % 3);
   }
   CheckFormula(SHEAR "-membrane_derivative bending", 0.125, PETSC_FALSE, 2);
 }
