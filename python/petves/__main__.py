@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import io
 import os
 import re
@@ -14,7 +15,7 @@ from typing import Any
 import petves
 from petves import laboratory, sweeps
 from petves.errors import Error
-from petves.program import become, scene_file, scenes
+from petves.program import become, scene_file, scene_files, scenes
 
 TOOLS = ("plot", "movie", "watch", "report", "compare", "sweep", "numbers", "scenes")
 """The commands; other words are the program's own."""
@@ -22,9 +23,7 @@ TOOLS = ("plot", "movie", "watch", "report", "compare", "sweep", "numbers", "sce
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    top = argparse.ArgumentParser(
-        prog="petves", description="Run, draw, film, compare, sweep and report petves scenes."
-    )
+    top = argparse.ArgumentParser(prog="petves", description="Run, draw, film, compare, sweep and report scenes.")
     commands = top.add_subparsers(dest="command", required=True)
     commands.add_parser("run", help="run a scene: run SCENE.opts -option value ...; run -help, run -help options")
     _add_pictures(commands)
@@ -94,13 +93,8 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     )
     grid.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time (one a core)")
     grid.add_argument("--ranks", type=int, default=1, help="MPI ranks of each run (1)")
-    grid.add_argument(
-        "--slurm",
-        nargs="?",
-        const="",
-        metavar="WORDS",
-        help="submit it as a job array, one run a task, with these words for sbatch",
-    )
+    words = dict(nargs="?", const="", metavar="WORDS")
+    grid.add_argument("--slurm", **words, help="submit it as a job array, one run a task, with these words for sbatch")
     cell = commands.add_parser("numbers", help="options of a scene, and chi and Re, from numbers in SI units")
     for name, needed, what in (
         ("radius", True, "perimeter/(2 pi), m"),
@@ -149,7 +143,12 @@ def main(arguments: list[str] | None = None) -> int:
         first = given[0] if given else ""
         if first and first not in (*TOOLS, "-h", "--help"):  # the program's own words
             at = int(first == "run")
-            return become([*given[:at], *map(scene_file, given[at : at + 1]), *given[at + 1 :]])
+            own = [*given[:at], *map(scene_file, given[at : at + 1]), *given[at + 1 :]]
+            if not at and first != "help" and first[0] != "-" and not os.path.exists(own[0]):
+                near = difflib.get_close_matches(first, [*TOOLS, *scene_files()], 1)
+                allowed = f"petves {near[0]} is meant?" if near else "allowed: -name value, or what petves help lists"
+                raise Error(f'"{first}": no option, file, scene or command; {allowed}')
+            return become(own)
         dashed = re.compile("-[a-z][a-z_-]+")  # an option with one dash, as those of runs have
         given = [f"-{word.replace('_', '-')}" if dashed.fullmatch(word) else word for word in given]
         words = vars(parser().parse_args(given))

@@ -90,12 +90,6 @@ def scenes() -> list[str]:
     return [f"{name:<23} {re.split(r'[:.;] ', text)[0]}" for name, text in first.items()]
 
 
-def _environment() -> dict[str, str]:
-    """Return what petves is started with: a Python takes this package, and no module from the current folder."""
-    path = os.pathsep.join(filter(None, (str(PACKAGE.parent), os.environ.get("PYTHONPATH"))))
-    return OPEN_MPI | os.environ | {"PYTHONPATH": path, "PYTHONSAFEPATH": "1"}
-
-
 def become(words: list[str]) -> int:
     """Run petves with these words in place of this process, or from the library; return its exit status."""
     found, library = _find()
@@ -113,13 +107,16 @@ def become(words: list[str]) -> int:
 def launch(words: list[str], ranks: int = 1, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
     """Run petves; return what has ended: its status and what it has printed. subprocess.TimeoutExpired after `timeout`."""
     started = [*(["mpirun", "-n", str(ranks)] if ranks > 1 else []), *command(), *words]
+    path = os.pathsep.join(filter(None, (str(PACKAGE.parent), os.environ.get("PYTHONPATH"))))
     kept = {"capture_output": True, "text": True, "errors": "replace", "stdin": subprocess.DEVNULL}
+    # a Python takes this package, and no module from the current folder
+    kept["env"] = OPEN_MPI | os.environ | {"PYTHONPATH": path, "PYTHONSAFEPATH": "1"}
     try:
-        done = subprocess.run(started, env=_environment(), timeout=timeout, **kept)
+        done = subprocess.run(started, timeout=timeout, **kept)
     except FileNotFoundError:
         raise Error("mpirun: no such program; install openmpi-bin") from None
     if ranks == 1 and "An error occurred in MPI_Init" in done.stderr:  # of two that start in the same moment
-        done = subprocess.run(started, env=_environment(), timeout=timeout, **kept)
+        done = subprocess.run(started, timeout=timeout, **kept)
     return done
 
 

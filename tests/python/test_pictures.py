@@ -98,10 +98,10 @@ def test_colours_leave_out_a_few_cells(run):
     assert 1.9 < reach(values) < 2.1
     window = Window(run, -1)
     most = np.abs(FIELDS["speed"].values(window)).max()
-    for high, ends in ((None, "neither"), (1.01 * most, "neither"), (0.9 * most, "max")):
+    for high, film, ends in ((0, 0, "neither"), (1.01, 0, "neither"), (0.9, 0, "max"), (1.01, 1.02, "max")):
         figure, (axes, bar) = new_figure(8, 4, columns=2)
-        image = draw_field(axes, FIELDS["speed"], window, Look(), high)
-        assert figure.colorbar(image, cax=bar).extend == ends, high
+        image = draw_field(axes, FIELDS["speed"], window, Look(), high * most, film * most)
+        assert figure.colorbar(image, cax=bar).extend == ends, (high, film)
 
 
 def test_membranes_of_small_vesicles_are_thin(run):

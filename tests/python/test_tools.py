@@ -42,6 +42,14 @@ def other(tmp_path_factory):
     return run_petves(tmp_path_factory.mktemp("tools") / "other", OPTIONS + " -fluid_viscosity 2").folder
 
 
+def test_mistyped_commands_and_scenes():
+    own = "no option, file, scene or command"
+    assert tool("polt", "out", good=False) == [f'petves: error: "polt": {own}; petves plot is meant?']
+    assert tool("shaer", good=False) == [f'petves: error: "shaer": {own}; petves shear is meant?']
+    line = f'petves: error: "my.opts": {own}; allowed: -name value, or what petves help lists'
+    assert tool("my.opts", good=False) == [line]
+
+
 def test_load_has_the_files_and_units(folder):
     data, run, series = petves.load(folder, "xarray"), petves.load(folder, "numpy"), read_series(folder / "series.csv")
     assert isinstance(run, Run) and data.attrs["reason"] == "finished"

@@ -194,6 +194,17 @@ def test_films_have_a_bar_of_the_tension(folders, monkeypatch, tmp_path):
     film(folders("pair"), tmp_path / "film.gif", every=4, field="vorticity", streamlines=True, width=600)
     figure = kept[0].figure
     assert "tension" in kept[0].last.get_xlabel() and "vorticity" in kept[0].bars[0].get_xlabel()
+    assert kept[0].bars[0]._colorbar.extend == "neither"
     assert all(round(150 * side) % 2 == 0 for side in figure.get_size_inches())
     found = texts(figure)
     assert not [(a, b) for i, (a, x) in enumerate(found) for b, y in found[:i] if x.overlaps(y)]
+
+
+def test_bar_of_a_film_has_arrows_for_later_pictures(folders, monkeypatch, tmp_path):
+    """The first picture's largest speed is 1.938, the last one's 1.944."""
+    kept = []
+    add_bar = movie.add_bar
+    monkeypatch.setattr(movie, "reach", lambda values: 1.94)
+    monkeypatch.setattr(movie, "add_bar", lambda place, *more: kept.append(place) or add_bar(place, *more))
+    film(folders("pair"), tmp_path / "film.gif", every=8, width=300)
+    assert [place._colorbar.extend for place in kept] == ["max", "neither"]

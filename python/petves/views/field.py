@@ -57,14 +57,14 @@ def reach(values: np.ndarray) -> float:
     return float(usual if 0 < RARE * usual < most else most) or 1.0
 
 
-def draw_field(axes: Axes, kind: FieldKind, window: Window, look: Look, high: float | None = None) -> AxesImage:
-    """Draw a field of the window's time smoothly; its colours reach to `high`, as `reach` says when left out."""
+def draw_field(axes: Axes, kind: FieldKind, window: Window, look: Look, high: float = 0, most: float = 0) -> AxesImage:
+    """Draw a field smoothly; colours reach to `high`, as `reach` says when left out. A film's largest value is `most`."""
     values = kind.values(window)
     high = high or reach(values)
     low, cmap = (-high, kind.cmap) if kind.signed else (0.0, look.cmap or kind.cmap)
     places = dict(extent=window.extent, origin="lower", aspect="equal", interpolation="bilinear")
     image = axes.imshow(values, cmap=cmap, vmin=low, vmax=high, **places)
-    if np.max(np.abs(values)) > high:  # arrows at the ends of its colour bar
+    if max(most, np.max(np.abs(values))) > high:  # arrows at the ends of its colour bar
         image.cmap.colorbar_extend = "both" if kind.signed else "max"
     unit = "(length from the vesicle)"
     names = [f"${c}$ {unit if window.origin[d] else '(length)'}" for d, c in enumerate("xy")]

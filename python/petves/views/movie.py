@@ -16,7 +16,6 @@ from petves.views.figures import PLAIN, Look, add_bar
 from petves.views.window import Window
 
 DOTS = 150  # an inch
-SUFFIXES = (".mp4", ".gif")
 
 
 def movie(
@@ -62,8 +61,8 @@ def movie(
     run = Run.read(folder)
     ffmpeg = shutil.which("ffmpeg") is not None
     path = Path(output) if output else run.folder / ("movie.mp4" if ffmpeg else "movie.gif")
-    if path.suffix not in SUFFIXES:
-        raise RunError(f"{path}: allowed: a name that ends in {' or '.join(SUFFIXES)}")
+    if path.suffix not in (".mp4", ".gif"):
+        raise RunError(f"{path}: allowed: a name that ends in .mp4 or .gif")
     if path.suffix == ".mp4" and not ffmpeg:
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
     if field not in FIELDS:
@@ -94,7 +93,8 @@ def _film(
 
     kind = FIELDS[field]
     windows = [Window(run, frame, look.follow) for frame in frames]
-    highest = max(reach(kind.values(window)) for window in windows)
+    ends = [(reach(values), np.max(np.abs(values))) for values in map(kind.values, windows)]
+    highest, most = np.max(ends, axis=0)
     limits = (run.tension[frames].min(), run.tension[frames].max()) if run.vesicles else (0.0, 1.0)
     sheet = box_sheet(windows[0], replace(look, width=width / DOTS), panels=1, last=run.vesicles > 0)
     (panel,), figure = sheet.panels, sheet.figure
@@ -107,7 +107,7 @@ def _film(
     with writer.saving(figure, str(path), DOTS), progress_bar(len(frames), unit="frames") as bar:
         for done, window in enumerate(windows):
             panel.clear()
-            image = draw_field(panel, kind, window, look, highest)
+            image = draw_field(panel, kind, window, look, highest, most)
             drawn = draw_membranes(panel, run, window.frame, limits, kind.line, look.follow)
             if streamlines:
                 draw_streamlines(panel, window)
