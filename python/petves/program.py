@@ -81,7 +81,7 @@ def scene_files() -> dict[str, Path]:
 
 def scene_file(word: str) -> str:
     """Return the file of a scene by its name; a word that is a file, an option or no name as it is."""
-    return str(scene_files().get(word, word)) if not (word.startswith("-") or os.path.exists(word)) else word
+    return str(scene_files().get(word, word)) if not (word.startswith("-") or os.path.isfile(word)) else word
 
 
 def scenes() -> list[str]:

@@ -14,6 +14,7 @@ import pytest
 from harness import SITE, read_series, run_petves, run_tool
 
 import petves
+from petves.program import scene_file
 from petves.run import Run
 from petves.views.report import report
 
@@ -48,6 +49,14 @@ def test_mistyped_commands_and_scenes():
     assert tool("shaer", good=False) == [f'petves: error: "shaer": {own}; petves shear is meant?']
     line = f'petves: error: "my.opts": {own}; allowed: -name value, or what petves help lists'
     assert tool("my.opts", good=False) == [line]
+
+
+def test_a_folder_hides_no_scene(tmp_path, monkeypatch):
+    """Of the same name; a file does."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "shear").mkdir()
+    (tmp_path / "relax").touch()
+    assert scene_file("shear").endswith("runs/shear.opts") and scene_file("relax") == "relax"
 
 
 def test_load_has_the_files_and_units(folder):
