@@ -207,7 +207,7 @@ int PetvesMain(int argc, char **argv) {
   if (argc > 1 && IsOneOf(argv[1], tools)) return StartTool(argc, argv);
   if (run) argc--, argv++; /* petves run FILE is petves FILE, petves run -option is petves -option */
   if (argc > 1 && argv[1][0] != '-') scene = SceneFile(argv[1]);
-  if (scene && !run && access(scene, F_OK)) scene = NULL; /* no scene, and no command */
+  if (scene && !run && access(scene, F_OK)) return StartTool(argc, argv); /* no scene: names the command that is near */
   words = (char **)calloc((size_t)argc + 2, sizeof(*words));
   if (!words) return 1;
   words[0] = argv[0];
