@@ -378,29 +378,3 @@ PetscErrorCode CoupledFixedAttempt(Scheme s, PetscReal dt) {
   PetscCall(CoupledAttempt(s, dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-#define MOMENT 1e-12 /* of the first step */
-
-PetscErrorCode CoupledStart(Scheme s) {
-  Coupled *d = (Coupled *)s->data;
-  State *now = &s->state, *next = &d->next;
-  const PetscReal dt = now->dt;
-  const PetscBool steady = s->fluid->steady;
-  PetscFunctionBeginUser;
-  if (now->solved || now->dt_last > 0 || !CouplingHasBodies(s->coupling) || (!steady && !now->solid))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  FluidSetSteady(s->fluid, PETSC_TRUE);
-  d->start = PETSC_TRUE;
-  PetscCall(CoupledAttempt(s, MOMENT * dt));
-  d->start = PETSC_FALSE;
-  FluidSetSteady(s->fluid, steady);
-  if (!*s->report.failure) {
-    PetscCall(VecCopy(now->X, next->X));
-    if (now->place) PetscCall(VecCopy(now->place, next->place));
-    PetscCall(StateCopy(next, now, PETSC_TRUE));
-    now->fields = CoupledMakes(d);
-    now->solved = PETSC_TRUE;
-  }
-  now->dt = dt;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -4,6 +4,35 @@
 #include "bodies/freebodies.h"
 #include "scheme/films.h"
 
+#define MOMENT 1e-12 /* of the first step */
+
+/* Solve the first state, with its markers where they are: one step without inertia, so short that nothing moves.
+   Without inertia that is the flow; with inertia the fluid starts from this flow past obstacles, not from a jump at
+   their surfaces, free ones without their loads, and from rest where there are none, which is left alone. */
+static PetscErrorCode Start_Coupled(Scheme s) {
+  Coupled *d = (Coupled *)s->data;
+  State *now = &s->state, *next = &d->next;
+  const PetscReal dt = now->dt;
+  const PetscBool steady = s->fluid->steady;
+  PetscFunctionBeginUser;
+  if (now->solved || now->dt_last > 0 || !CouplingHasBodies(s->coupling) || (!steady && !now->solid))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  FluidSetSteady(s->fluid, PETSC_TRUE);
+  d->start = PETSC_TRUE;
+  PetscCall(CoupledAttempt(s, MOMENT * dt));
+  d->start = PETSC_FALSE;
+  FluidSetSteady(s->fluid, steady);
+  if (!*s->report.failure) {
+    PetscCall(VecCopy(now->X, next->X));
+    if (now->place) PetscCall(VecCopy(now->place, next->place));
+    PetscCall(StateCopy(next, now, PETSC_TRUE));
+    now->fields = CoupledMakes(d);
+    now->solved = PETSC_TRUE;
+  }
+  now->dt = dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Start-up: backward Euler on a sixteenth of the step, then BDF2 with doubling steps up to the whole of it. */
 static PetscErrorCode GradedStart(Scheme s, Coupled *d, PetscReal dt) {
   const PetscReal parts[] = {1. / 16, 1. / 16, 1. / 8, 1. / 4, 1. / 2};
@@ -160,7 +189,7 @@ static PetscErrorCode Step_Coupled(Scheme s, PetscReal most) {
   Coupled *d = (Coupled *)s->data;
   PetscReal speed = 0; /* max(|u| + |v|), which bounds steps with convection */
   PetscFunctionBeginUser;
-  PetscCall(CoupledStart(s));
+  PetscCall(Start_Coupled(s));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   if (d->convection) PetscCall(ConvectionSpeed(d->convection, s->state.w, &speed));
   if (s->policy.adaptive)
@@ -262,7 +291,7 @@ PetscErrorCode SchemeCreate_Coupled(Scheme s) {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   s->data = d;
-  s->ops = (SchemeOps){.start = CoupledStart, .step = Step_Coupled, .undo = Undo_Coupled, .destroy = Destroy_Coupled};
+  s->ops = (SchemeOps){.start = Start_Coupled, .step = Step_Coupled, .undo = Undo_Coupled, .destroy = Destroy_Coupled};
   PetscCall(SetUp_Coupled(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

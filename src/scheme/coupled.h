@@ -47,12 +47,6 @@ PETSC_EXTERN PetscErrorCode CoupledAttempt(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode CoupledFixedAttempt(Scheme scheme, PetscReal dt);
 PETSC_EXTERN PetscErrorCode CoupledEstimate(Scheme scheme, PetscReal *error);
 
-/* CoupledStart - solve the first state, with its markers where they are: one step without inertia, so short that
-   nothing moves. Without inertia that is the flow; with inertia the fluid starts from this flow past obstacles, not
-   from a jump at their surfaces, free ones without their loads, and from rest where there are none, which is left
-   alone. Collective. */
-PETSC_EXTERN PetscErrorCode CoupledStart(Scheme scheme);
-
 /* CoupledAdvance - next becomes the state and the state the old one; then the markers are moved to their area and
    edges. Collective. */
 PETSC_EXTERN PetscErrorCode CoupledAdvance(Scheme scheme, PetscReal dt);
