@@ -237,9 +237,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
     {p->exponents.n != 2 || p->exponents.v[0] <= p->exponents.v[1],
      "-contact_potential_exponents {-contact_potential_exponents}: not m,n with m > n; allowed: such as 4,2 or 12,6"},
     {stretches && !s->scheme.length_target,
-     "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"},
-    {stretches && s->scheme.wanted > 0,
-     "-scheme_auto {-scheme_auto}: -membrane_law {-membrane_law} is not among what it was measured for; allowed: 0, or -membrane_law inextensible"}};
+     "-scheme_length_target false: -membrane_law {-membrane_law} has its tension from the length that edges get; allowed: true, or -membrane_law inextensible"}};
   return REFUSE(s, rules);
 }
 

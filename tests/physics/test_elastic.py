@@ -308,6 +308,25 @@ def test_bending_of_stretched_membranes_on_ranks(tmp_path, moment):
     agree(tmp_path, f"{TWO} -membrane_stretching 2 -membrane_moment {moment}", 0.1, 0.2, ("inclination_2", "length_1"))
 
 
+@pytest.mark.parametrize("wanted", [1e-2, 1e-3])
+def test_accuracy_asked_for(tmp_path, wanted):
+    """-scheme_auto: a capsule in shear against the boundary integral, and one that an extension draws to 1.55 of its length
+    and a thin shape against many markers and small steps, its points over R0."""
+    shear = f"-domain_bc_x free -domain_bc_y free -flow_type shear -vesicle_semi_axes 1,1 -vesicle_bending 0 {stretched('hooke', 10.0)}"
+    run = run_petves(tmp_path / "shear", f"{shear} -scheme_auto {wanted} -time_end 24")
+    assert [deformed(run), angle(run)] == pytest.approx(CAPSULES["hooke"]["0.1"][:2], abs=0.1 * wanted)
+    drawn = f"-domain_bc_x free -domain_bc_y free -flow_type extension -vesicle_semi_axes 1,1 -vesicle_bending 0.02 {stretched('green', 4.0)}"
+    drawn += " -scheme_auto {} -time_end 3 -output_every 1e9"
+    points = []
+    for name, more in (("auto", ""), ("fine", "-vesicle_markers 101 -time_adapt_tol 1e-6 -time_adapt_max_step 0.02")):
+        run = run_petves(tmp_path / name, f"{drawn.format(wanted if name == 'auto' else 1e-4)} {more}")
+        X = run.saved("vesicle/markers", "run.h5")[-1]
+        modes = np.fft.fft(X[:, 0] + 1j * X[:, 1]) / len(X)
+        wave = np.fft.fftfreq(len(X), 1 / len(X))
+        points.append(np.exp(1j * np.outer(np.linspace(0, 2 * np.pi, 200), wave)) @ modes)
+    assert abs(points[0] - points[1]).max() < wanted
+
+
 APART = 4e4
 
 

@@ -201,7 +201,7 @@ class Draw:
     def membranes(self, count: int, R0: float, nu: float, bending: float) -> None:
         pick, tension = self.random.choice, bending / R0**2
         derivative = pick(["spectral", "spectral", "bending", "fd"])
-        if self.chance(0.45) and "scheme_auto" not in self.text:
+        if self.chance(0.45):
             self.text |= {"membrane_derivative": derivative, "membrane_law": pick(["green", "neo_hookean", "hooke"])}
             modulus = tension * pick([3, 30, 1000])
             moduli = [modulus, *(modulus * pick([0, 1, 5]) for _ in range(count - 1))]
