@@ -51,6 +51,7 @@ PetscErrorCode InnerFluidCreate(Obstacles o, PetscReal h, PetscReal smoothed, In
   PetscCall(PetscMalloc4(2 * f->n, &f->rest, 2 * f->n, &f->X, f->n, &f->weight, f->n, &f->turn));
   for (PetscInt b = 0; b < l->bodies; b++)
     if (o->motion[b].free) PetscCall(InnerFluidFill(f, b, smoothed));
+  PetscCall(PetscArraycpy(f->X, f->rest, 2 * f->n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

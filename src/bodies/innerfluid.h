@@ -37,7 +37,7 @@ struct _p_InnerFluid {
 };
 
 /* InnerFluidCreate - of the free bodies among the obstacles, with points about h apart. InnerFluidPlace - X where the
-   obstacles have been placed. Not collective. */
+   obstacles have been placed, from Create to Place that at time 0. Not collective. */
 PETSC_EXTERN PetscErrorCode InnerFluidCreate(Obstacles obstacles, PetscReal h, PetscReal smoothed, InnerFluid *inner);
 PETSC_EXTERN PetscErrorCode InnerFluidDestroy(InnerFluid *inner);
 PETSC_EXTERN void InnerFluidPlace(InnerFluid inner);
