@@ -48,6 +48,7 @@ LONG = SHORT | {
     "contrast_channel": (f"{TWO_STEPS} -domain_cells 32,32 -domain_bc_x periodic -vesicle_viscosity_ratio 5", 0),
     "contrast_posts": (f"{TWO_STEPS} {POSTS} -domain_cells 32,32 -vesicle_viscosity_ratio 5", 0),
     "contrast_moving_posts": (f"{BASE} -domain_cells 32,32 {MOVING} {PERIODIC} -vesicle_viscosity_ratio 5", 0),
+    "inertial_post": (f"{TWO_STEPS} -domain_cells 32,32 {SOLID} -obstacle_free all -fluid_inertia convective", 0),
     "membranes": (f"{TWO_STEPS} {STRETCHING} -membrane_memory 1 -tracer_grid 2,2", 0),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -time_end 0.03", 0),
