@@ -59,21 +59,22 @@ PetscErrorCode CrossingPlace(Crossing c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CrossingApply(Crossing c, PetscInt first, PetscInt end, const PetscScalar F[], PetscScalar W[]) {
-  const Layout l = c->mobility->bodies->layout;
+PetscErrorCode CrossingApply(Crossing c, PetscBool to_vesicles, const PetscScalar F[], PetscScalar W[]) {
+  const Bodies bodies = c->mobility->bodies;
+  const Layout l = bodies->layout, coarse = c->coarse->layout;
+  const PetscInt solid = BodiesFirstObstacle(bodies), begin = to_vesicles ? 0 : solid,
+                 end = to_vesicles ? solid : 2 * l->n;
   PetscFunctionBeginUser;
   for (PetscInt b = l->own; b < l->end; b++) {
     const CurvePoints *p = &c->curve[b - l->own];
     PetscCall(DenseProduct(PETSC_FALSE, 2, p->points, p->n, F + 2 * LayoutOffset(l, b), p->to_markers,
-                           c->points + 2 * LayoutOffset(c->coarse->layout, b)));
+                           c->points + 2 * LayoutOffset(coarse, b)));
   }
   PetscCall(CoarseGridApply(c->coarse, c->points));
   PetscCall(PetscArrayzero(c->W, 2 * l->n));
-  for (PetscInt b = PetscMax(first, l->own); b < PetscMin(end, l->end); b++)
-    CurvePointsSpread(&c->curve[b - l->own], c->points + 2 * LayoutOffset(c->coarse->layout, b),
-                      c->W + 2 * LayoutOffset(l, b));
+  for (PetscInt b = l->own; b < l->end; b++)
+    CurvePointsSpread(&c->curve[b - l->own], c->points + 2 * LayoutOffset(coarse, b), c->W + 2 * LayoutOffset(l, b));
   PetscCall(CoarseCorrectionApply(c->near, F, NULL, c->W));
-  for (PetscInt b = PetscMax(first, l->own); b < PetscMin(end, l->end); b++)
-    for (PetscInt k = 2 * LayoutOffset(l, b); k < 2 * (LayoutOffset(l, b) + LayoutCount(l, b)); k++) W[k] += c->W[k];
+  for (PetscInt k = begin; k < end; k++) W[k - begin] += c->W[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,7 +14,7 @@ PETSC_EXTERN PetscErrorCode CrossingDestroy(Crossing *crossing);
 /* CrossingPlace - where the mobility has been placed. Collective. */
 PETSC_EXTERN PetscErrorCode CrossingPlace(Crossing crossing);
 
-/* CrossingApply - W += the velocity at the own markers of bodies first .. end - 1 by the force F of the others, which
-   is zero on these; marker vectors of all bodies, own parts. Collective. */
-PETSC_EXTERN PetscErrorCode CrossingApply(Crossing crossing, PetscInt first, PetscInt end, const PetscScalar F[],
+/* CrossingApply - W += the velocity at own vesicles (to vesicles, W[2n]) or own obstacles (W[2w]) by the force F[2(n +
+   w)] on the others, which is zero on these. Collective. */
+PETSC_EXTERN PetscErrorCode CrossingApply(Crossing crossing, PetscBool to_vesicles, const PetscScalar F[],
                                           PetscScalar W[]);

@@ -17,20 +17,21 @@ static PetscReal BlockReach(Coupling c) {
 
 PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible, Preconditioner *out) {
   const Coupling c = u->coupling;
+  const Obstacles o = c->bodies->obstacles;
+  const PetscInt solid = BodiesObstacleNumbers(c->bodies);
   Preconditioner p;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&p));
   *out = p;
   p->unknowns = u;
   p->flexible = flexible;
-  p->step_ratio = scene->time.adapt == ADAPT_ERROR && !c->bodies->obstacles ? ADAPTED_RATIO : OBSTACLE_STEP_RATIO;
-  PetscCall(PetscMalloc1(u->velocity, &p->force));
-  if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
+  p->step_ratio = scene->time.adapt == ADAPT_ERROR && !o ? ADAPTED_RATIO : OBSTACLE_STEP_RATIO;
+  PetscCall(PetscMalloc2(u->velocity + solid, &p->force, solid + (o ? FreeBodiesOwn(o) : 0), &p->kept));
+  if (o) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
   if (c->mobility->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
-    if (c->bodies->obstacles && c->bodies->obstacles->free->M)
-      PetscCall(CrossingCreate(&scene->fluid, c->mobility, &p->crossing));
+    if (o && o->free->M) PetscCall(CrossingCreate(&scene->fluid, c->mobility, &p->crossing));
   } else if (CouplingHasMembrane(c)) {
     PetscCall(MeanMobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
@@ -48,7 +49,7 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MeanMobilityDestroy(&p->mobility));
-  PetscCall(PetscFree(p->force));
+  PetscCall(PetscFree2(p->force, p->kept));
   PetscCall(PetscFree(p->treading));
   PetscCall(PetscFree(*preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -143,26 +144,24 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Block Gauss-Seidel between the obstacles and the vesicles, of which z has the residuals: the obstacles, the vesicles
-   beside them, and the obstacles again beside these. */
+/* Block Gauss-Seidel of obstacles and vesicles, whose residuals are V, sigma and behind V: the obstacles, the vesicles
+   in their flow, and what is left for the obstacles in the flow of the vesicles. */
 static PetscErrorCode SolveAcross(Preconditioner p, PetscScalar V[], PetscScalar sigma[]) {
   const Unknowns u = p->unknowns;
   const Bodies b = u->coupling->bodies;
   const PetscInt n = u->velocity, w = BodiesObstacleNumbers(b), all = w + FreeBodiesOwn(b->obstacles);
-  PetscScalar *F, *r;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n + w, &F, n + all, &r));
-  PetscCall(PetscArraycpy(r + n, V + n, all));
+  PetscCall(PetscArraycpy(p->kept, V + n, all));
   PetscCall(ObstacleBlockBegin(p->solid, V + n, V));
   PetscCall(ObstacleBlockEnd(p->solid, NULL, V + n));
-  PetscCall(PetscArraycpy(F + n, V + n, w));
-  PetscCall(CrossingApply(p->crossing, 0, b->vesicles, F, V));
+  PetscCall(PetscArrayzero(p->force, n));
+  PetscCall(PetscArraycpy(p->force + n, V + n, w));
+  PetscCall(CrossingApply(p->crossing, PETSC_TRUE, p->force, V));
   PetscCall(SharedShapesSolve(p->shapes, V, sigma));
-  PetscCall(UnknownsForce(u, V, F));
-  PetscCall(PetscArrayzero(F + n, w));
-  PetscCall(CrossingApply(p->crossing, b->vesicles, b->layout->bodies, F, r));
-  PetscCall(PetscArraycpy(V + n, r + n, all));
-  PetscCall(PetscFree2(F, r));
+  PetscCall(UnknownsForce(u, V, p->force));
+  PetscCall(PetscArrayzero(p->force + n, w));
+  PetscCall(CrossingApply(p->crossing, PETSC_FALSE, p->force, p->kept));
+  PetscCall(PetscArraycpy(V + n, p->kept, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,7 +30,8 @@ struct _p_Preconditioner {
   Application now;
   PetscBool flexible; /* blocks may be made anew under way */
   PetscBool failed;   /* a block could not be factored */
-  PetscScalar *force; /* [2n] of the own vesicles, work */
+  PetscScalar *force; /* [2(n + w)] on the own vesicles, and obstacles, work */
+  PetscScalar *kept;  /* [2w + 3 own free] residuals of obstacles, work */
 };
 
 /* PreconditionerCreate - for the scene; flexible: for a KSP that allows a changing preconditioner. Collective. */
