@@ -1,16 +1,18 @@
 #include "precondition/freeblock.h"
+#include "bodies/repulsion.h"
 #include "numerics/blas.h"
 
 struct _p_FreeBlock {
-  Obstacles obstacles; /* borrowed */
-  PetscInt n, m;       /* 2W, 3 free */
-  PetscReal *arm;      /* [2W] markers less the center of their body */
-  float *response;     /* [m][2W] A^-1 m R */
-  PetscReal *inertia;  /* [m] a0 M */
-  PetscReal *S;        /* [m][m] R^T A^-1 m R + a0 M, factored */
-  PetscBLASInt *pivot; /* [m] */
-  PetscReal *sum;      /* [m] work */
-  PetscScalar *F;      /* [2W] work */
+  Obstacles obstacles;   /* borrowed */
+  PetscInt n, m;         /* 2W, 3 free */
+  PetscReal *arm;        /* [2W] markers less the center of their body */
+  float *response;       /* [m][2W] A^-1 m R */
+  PetscReal *resistance; /* [m][m] R^T A^-1 m R */
+  PetscReal *D;          /* [m][m] */
+  PetscReal *S;          /* [m][m] R^T A^-1 m R + D, factored */
+  PetscBLASInt *pivot;   /* [m] */
+  PetscReal *sum;        /* [m] work */
+  PetscScalar *F;        /* [2W] work */
 };
 
 PetscErrorCode FreeBlockCreate(Obstacles o, FreeBlock *out) {
@@ -21,8 +23,8 @@ PetscErrorCode FreeBlockCreate(Obstacles o, FreeBlock *out) {
   b->obstacles = o;
   b->n = 2 * o->layout->M;
   b->m = 3 * o->free->M;
-  PetscCall(PetscMalloc7(b->n, &b->arm, b->n * b->m, &b->response, b->m, &b->inertia, b->m * b->m, &b->S, b->m,
-                         &b->pivot, b->m, &b->sum, b->n, &b->F));
+  PetscCall(PetscMalloc5(b->n, &b->arm, b->n * b->m, &b->response, b->m, &b->pivot, b->m, &b->sum, b->n, &b->F));
+  PetscCall(PetscMalloc3(b->m * b->m, &b->resistance, b->m * b->m, &b->D, b->m * b->m, &b->S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -30,7 +32,8 @@ PetscErrorCode FreeBlockDestroy(FreeBlock *block) {
   FreeBlock b = *block;
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree7(b->arm, b->response, b->inertia, b->S, b->pivot, b->sum, b->F));
+  PetscCall(PetscFree5(b->arm, b->response, b->pivot, b->sum, b->F));
+  PetscCall(PetscFree3(b->resistance, b->D, b->S));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -44,8 +47,7 @@ static void FreeBlockSums(FreeBlock b, const PetscScalar F[], PetscReal sum[]) {
   }
 }
 
-PetscErrorCode FreeBlockSetUp(FreeBlock b, PetscReal a0, const PetscReal mass[], FreeBlockInverse *inverse,
-                              void *context, PetscBool *done) {
+PetscErrorCode FreeBlockSetUp(FreeBlock b, FreeBlockInverse *inverse, void *context) {
   const Obstacles o = b->obstacles;
   float *R;
   PetscFunctionBeginUser;
@@ -65,13 +67,20 @@ PetscErrorCode FreeBlockSetUp(FreeBlock b, PetscReal a0, const PetscReal mass[],
       }
       PetscCall(inverse(context, R, b->response + j * b->n));
       for (PetscInt k = 0; k < b->n; k++) b->F[k] = b->response[j * b->n + k];
-      FreeBlockSums(b, b->F, b->S + j * b->m);
-      b->inertia[j] = mass ? a0 * mass[j] : 0;
-      b->S[j * b->m + j] += b->inertia[j];
+      FreeBlockSums(b, b->F, b->resistance + j * b->m);
     }
   }
-  PetscCall(DenseFactor(b->m, b->S, b->pivot, done));
   PetscCall(PetscFree(R));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FreeBlockHold(FreeBlock b, PetscReal a0, const PetscReal mass[], Forces forces, PetscBool *done) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(b->D, b->m * b->m));
+  for (PetscInt j = 0; j < b->m && mass; j++) b->D[j * (b->m + 1)] = a0 * mass[j];
+  RepulsionHold(forces, b->obstacles->at.end, b->D);
+  for (PetscInt k = 0; k < b->m * b->m; k++) b->S[k] = b->resistance[k] + b->D[k];
+  PetscCall(DenseFactor(b->m, b->S, b->pivot, done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,7 +93,7 @@ PetscErrorCode FreeBlockSolve(FreeBlock b, const float from[], PetscScalar q[], 
   PetscCall(DenseSolve(b->m, b->S, b->pivot, PETSC_FALSE, 1, b->sum));
   for (PetscInt j = 0; j < b->m; j++)
     for (PetscInt k = 0; k < b->n; k++) F[k] -= b->sum[j] * b->response[j * b->n + k];
-  for (PetscInt j = 0; j < b->m; j++) q[j] += b->inertia[j] * b->sum[j]; /* R^T F */
+  PetscCall(DenseMultAdd(PETSC_FALSE, b->m, b->m, 1, b->D, b->sum, q)); /* R^T F */
   for (PetscInt body = 0; body < o->layout->bodies; body++) {
     const PetscInt first = 3 * (o->motion[body].free - 1), at = 2 * o->layout->start[body];
     if (first >= 0) FreeBodyBalance(LayoutCount(o->layout, body), b->arm + at, q + first, F + at);
