@@ -174,19 +174,6 @@ PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void RepulsionHold(Forces forces, PetscReal end, PetscReal D[]) {
-  const Repulsion r = (Repulsion)ForcesFind(forces, "contact");
-  const PetscInt m = r && r->bodies->obstacles ? 3 * r->bodies->obstacles->free->M : 0;
-  for (PetscInt k = 0; m && k < r->count; k++) {
-    const Spring *s = &r->spring[k];
-    for (int c = 0; c < 6; c++)
-      for (int d = 0; d < 6; d++) {
-        const PetscInt i = 3 * (s->body[c / 3] - 1) + c % 3, j = 3 * (s->body[d / 3] - 1) + d % 3;
-        if (i >= 0 && j >= 0) D[j * m + i] += end * s->stiffness * s->pull[c / 3][c % 3] * s->pull[d / 3][d % 3];
-      }
-  }
-}
-
 static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const PetscScalar x[], PetscReal *sum) {
   const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;

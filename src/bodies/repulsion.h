@@ -48,7 +48,3 @@ struct _p_Repulsion {
    alpha V and, for its sign, at.end q of the obstacles are the ways. Collective. */
 PETSC_EXTERN PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, const PetscScalar V[],
                                             const PetscScalar q[], PetscScalar F[], PetscScalar b[]);
-
-/* RepulsionHold - D[3 free][3 free] += end SUM stiffness pull pull^T of the same springs: what T pull has of q alone.
-   Not collective. */
-PETSC_EXTERN void RepulsionHold(Forces forces, PetscReal end, PetscReal D[]);

@@ -26,21 +26,19 @@ static void TabulateCorrection(CoarseCorrection s, const OffsetTable *L) {
   }
 }
 
-PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CorrectionPairs which,
-                                      CoarseCorrection *out) {
+PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *out) {
+  const PetscInt M = mobility->bodies->membrane->layout->M;
   CoarseCorrection s;
   OffsetTable L;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
   s->mobility = mobility;
-  s->which = which;
-  s->layout = which == CORRECTION_VESICLES ? mobility->bodies->membrane->layout : mobility->bodies->layout;
   s->reach = CELLS * coarse->fluid->grid->h;
   PetscCall(MeanTableCreate(&mobility->near->lattice, coarse->markers->kernel, &L));
   TabulateCorrection(s, &L);
   PetscCall(OffsetTableDestroy(&L));
-  PetscCall(PetscCalloc2(2 * s->layout->M, &s->force, 2 * s->layout->M, &s->jump));
+  PetscCall(PetscCalloc2(2 * M, &s->force, 2 * M, &s->jump));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,7 +53,7 @@ PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
 
 /* The pairs of marker i with those of the block's column. */
 static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
-  const Layout l = s->mobility->bodies->layout;
+  const Layout l = s->mobility->bodies->membrane->layout;
   const NearBounds *column = &s->mobility->near->pairs->bounds[b->column];
   const PetscReal *X = s->mobility->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
   PetscFunctionBeginUser;
@@ -75,10 +73,9 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a block joins bodies that are corrected. */
-static PetscBool JoinsBodies(CoarseCorrection s, const NearBlock *b) {
-  const PetscInt vesicles = (b->row < s->mobility->bodies->vesicles) + (b->column < s->mobility->bodies->vesicles);
-  return !NearBlockIsSelf(b) && vesicles == (s->which == CORRECTION_VESICLES ? 2 : 1);
+/* Whether a block joins two vesicles. */
+static PetscBool JoinsVesicles(CoarseCorrection s, const NearBlock *b) {
+  return !NearBlockIsSelf(b) && PetscMax(b->row, b->column) < s->mobility->bodies->vesicles;
 }
 
 PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
@@ -87,7 +84,7 @@ PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
   PetscFunctionBeginUser;
   s->pairs = 0;
   for (const NearBlock *b = list->block; b < list->block + list->count.blocks; b++)
-    for (PetscInt i = start[b->row]; i < start[b->row + 1] && JoinsBodies(s, b); i++)
+    for (PetscInt i = start[b->row]; i < start[b->row + 1] && JoinsVesicles(s, b); i++)
       PetscCall(AddCorrectionRow(s, b, i));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,7 +130,7 @@ static void AddJumps(CoarseCorrection s, PetscInt row, PetscInt column, PetscRea
 PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], const PetscScalar J[],
                                      PetscScalar U[]) {
   const NearList *list = &s->mobility->near->list;
-  const Layout l = s->layout;
+  const Layout l = s->mobility->bodies->membrane->layout;
   const PetscInt first = l->first, end = l->first + l->n;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, F, s->force));
@@ -145,7 +142,7 @@ PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], 
   if (!J) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGather(l, 2, J, s->jump));
   for (const NearBlock *b = list->block; b < list->block + list->count.blocks; b++) {
-    if (!JoinsBodies(s, b)) continue;
+    if (!JoinsVesicles(s, b)) continue;
     AddJumps(s, b->row, b->column, 1, b->shift, U);
     AddJumps(s, b->column, b->row, -1, b->shift, U);
   }

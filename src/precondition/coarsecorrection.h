@@ -1,4 +1,4 @@
-/* What the coarse grid lacks between markers of two bodies next to one another (docs/suspensions.md, Near markers),
+/* What the coarse grid lacks between markers of two vesicles next to one another (docs/suspensions.md, Near markers),
    the velocity -R F + D J of forces F and, with viscosity contrast, of jumps J.
 
        R = S - L,
@@ -22,27 +22,21 @@ typedef struct {
   float xx, xy, yy;
 } CorrectionPair;
 
-/* Which markers: of two vesicles, or of a vesicle and an obstacle. */
-typedef enum { CORRECTION_VESICLES, CORRECTION_CROSSING } CorrectionPairs;
-
 typedef struct _p_CoarseCorrection *CoarseCorrection;
 struct _p_CoarseCorrection {
-  Mobility mobility; /* borrowed: markers, normals, and the pairs of bodies near one another */
-  CorrectionPairs which;
-  Layout layout;                       /* borrowed: of the vesicles, or of all bodies */
+  Mobility mobility;                   /* borrowed: markers, normals, and the pairs of vesicles near one another */
   PetscReal reach;                     /* length */
   PetscReal across[CORRECTION_POINTS]; /* R = across I + (along - across) r r^T/r^2 by distance, from 0 to the reach */
   PetscReal along[CORRECTION_POINTS];
   CorrectionPair *pair;
   PetscInt pairs;
   size_t room;
-  PetscScalar *force, *jump; /* [2M] of the layout, work */
+  PetscScalar *force, *jump; /* [2M] work */
 };
 
-/* CoarseCorrectionCreate - for such bodies of a mobility that has a near field, and this coarse grid. Not collective.
+/* CoarseCorrectionCreate - for the membranes of a mobility that has a near field, and this coarse grid. Not collective.
  */
-PETSC_EXTERN PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CorrectionPairs which,
-                                                   CoarseCorrection *range);
+PETSC_EXTERN PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *range);
 PETSC_EXTERN PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range);
 
 /* CoarseCorrectionPlace - the pairs where the markers have been placed. Not collective. */

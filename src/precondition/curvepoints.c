@@ -29,8 +29,3 @@ PetscErrorCode CurvePointsDestroy(CurvePoints *w) {
   PetscCall(PetscFree2(w->to_markers, w->to_points));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-void CurvePointsSpread(const CurvePoints *w, const PetscReal W[], PetscReal U[]) {
-  for (PetscInt i = 0; i < 2 * w->points; i++)
-    for (PetscInt k = 0; k < w->n; k++) U[2 * k + i % 2] += w->to_markers[i / 2 * w->n + k] * W[i];
-}

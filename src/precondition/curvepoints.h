@@ -18,6 +18,4 @@ typedef struct {
 
 /* CurvePointsCreate - for n markers and so many points, an odd number of at most n. Not collective. */
 PETSC_EXTERN PetscErrorCode CurvePointsCreate(PetscBool open, PetscInt n, PetscInt points, CurvePoints *curve);
-/* CurvePointsSpread - U[2n] += Q W of vectors W[2 points] at the points. Not collective. */
-PETSC_EXTERN void CurvePointsSpread(const CurvePoints *curve, const PetscReal W[], PetscReal U[]);
 PETSC_EXTERN PetscErrorCode CurvePointsDestroy(CurvePoints *curve);

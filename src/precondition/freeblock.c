@@ -1,19 +1,17 @@
 #include "precondition/freeblock.h"
-#include "bodies/repulsion.h"
 #include "numerics/blas.h"
 
 struct _p_FreeBlock {
   Obstacles obstacles; /* borrowed */
   PetscInt n, m;       /* 2W, 3 free */
   PetscReal *arm;      /* [2W] markers less the center of their body */
-  PetscReal *over;     /* [m] 1, 1 and 1/radius of each body, by which R is scaled: floats have no room for a length */
+  PetscReal *over;     /* [m] 1, 1, 1/radius of each body: R is scaled, as single precision has no room for any unit */
   float *response;     /* [m][2W] A^-1 m R over */
-  PetscReal *resistance; /* [m][m] R^T A^-1 m R over */
-  PetscReal *D;          /* [m][m] */
-  PetscReal *S;          /* [m][m] (R^T A^-1 m R + D) over, factored */
-  PetscBLASInt *pivot;   /* [m] */
-  PetscReal *sum;        /* [m] work */
-  PetscScalar *F;        /* [2W] work */
+  PetscReal *inertia;  /* [m] a0 M over */
+  PetscReal *S;        /* [m][m] (R^T A^-1 m R + a0 M) over, factored */
+  PetscBLASInt *pivot; /* [m] */
+  PetscReal *sum;      /* [m] work */
+  PetscScalar *F;      /* [2W] work */
 };
 
 PetscErrorCode FreeBlockCreate(Obstacles o, FreeBlock *out) {
@@ -24,9 +22,8 @@ PetscErrorCode FreeBlockCreate(Obstacles o, FreeBlock *out) {
   b->obstacles = o;
   b->n = 2 * o->layout->M;
   b->m = 3 * o->free->M;
-  PetscCall(PetscMalloc6(b->n, &b->arm, b->m, &b->over, b->n * b->m, &b->response, b->m, &b->pivot, b->m, &b->sum, b->n,
-                         &b->F));
-  PetscCall(PetscMalloc3(b->m * b->m, &b->resistance, b->m * b->m, &b->D, b->m * b->m, &b->S));
+  PetscCall(PetscMalloc4(b->n, &b->arm, b->n * b->m, &b->response, b->m * b->m, &b->S, b->n, &b->F));
+  PetscCall(PetscMalloc4(b->m, &b->over, b->m, &b->inertia, b->m, &b->pivot, b->m, &b->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,8 +31,8 @@ PetscErrorCode FreeBlockDestroy(FreeBlock *block) {
   FreeBlock b = *block;
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree6(b->arm, b->over, b->response, b->pivot, b->sum, b->F));
-  PetscCall(PetscFree3(b->resistance, b->D, b->S));
+  PetscCall(PetscFree4(b->arm, b->response, b->S, b->F));
+  PetscCall(PetscFree4(b->over, b->inertia, b->pivot, b->sum));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,7 +46,8 @@ static void FreeBlockSums(FreeBlock b, const PetscScalar F[], PetscReal sum[]) {
   }
 }
 
-PetscErrorCode FreeBlockSetUp(FreeBlock b, FreeBlockInverse *inverse, void *context) {
+PetscErrorCode FreeBlockSetUp(FreeBlock b, PetscReal a0, const PetscReal mass[], FreeBlockInverse *inverse,
+                              void *context, PetscBool *done) {
   const Obstacles o = b->obstacles;
   float *R;
   PetscFunctionBeginUser;
@@ -70,20 +68,13 @@ PetscErrorCode FreeBlockSetUp(FreeBlock b, FreeBlockInverse *inverse, void *cont
       }
       PetscCall(inverse(context, R, b->response + j * b->n));
       for (PetscInt k = 0; k < b->n; k++) b->F[k] = b->response[j * b->n + k];
-      FreeBlockSums(b, b->F, b->resistance + j * b->m);
+      FreeBlockSums(b, b->F, b->S + j * b->m);
+      b->inertia[j] = mass ? a0 * mass[j] * b->over[j] : 0;
+      b->S[j * b->m + j] += b->inertia[j];
     }
   }
-  PetscCall(PetscFree(R));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FreeBlockHold(FreeBlock b, PetscReal a0, const PetscReal mass[], Forces forces, PetscBool *done) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(b->D, b->m * b->m));
-  for (PetscInt j = 0; j < b->m && mass; j++) b->D[j * (b->m + 1)] = a0 * mass[j];
-  RepulsionHold(forces, b->obstacles->at.end, b->D);
-  for (PetscInt k = 0; k < b->m * b->m; k++) b->S[k] = b->resistance[k] + b->D[k] * b->over[k / b->m];
   PetscCall(DenseFactor(b->m, b->S, b->pivot, done));
+  PetscCall(PetscFree(R));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -96,12 +87,11 @@ PetscErrorCode FreeBlockSolve(FreeBlock b, const float from[], PetscScalar q[], 
   PetscCall(DenseSolve(b->m, b->S, b->pivot, PETSC_FALSE, 1, b->sum));
   for (PetscInt j = 0; j < b->m; j++)
     for (PetscInt k = 0; k < b->n; k++) F[k] -= b->sum[j] * b->response[j * b->n + k];
-  for (PetscInt j = 0; j < b->m; j++) b->sum[j] *= b->over[j];
-  PetscCall(DenseMultAdd(PETSC_FALSE, b->m, b->m, 1, b->D, b->sum, q)); /* R^T F */
+  for (PetscInt j = 0; j < b->m; j++) q[j] += b->inertia[j] * b->sum[j]; /* R^T F */
   for (PetscInt body = 0; body < o->layout->bodies; body++) {
     const PetscInt first = 3 * (o->motion[body].free - 1), at = 2 * o->layout->start[body];
     if (first >= 0) FreeBodyBalance(LayoutCount(o->layout, body), b->arm + at, q + first, F + at);
   }
-  PetscCall(PetscArraycpy(q, b->sum, b->m));
+  for (PetscInt j = 0; j < b->m; j++) q[j] = b->sum[j] * b->over[j];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

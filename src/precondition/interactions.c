@@ -28,7 +28,8 @@ static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], cons
     RigidFitTurn(&s->fit[v - l->own], PETSC_TRUE, p->points, c->W + at, w);
     PetscCall(DenseMultAdd(PETSC_FALSE, points, points, 1, q->self, c->F + at, w));
     PetscCall(PetscArrayzero(marker, 2 * p->n));
-    CurvePointsSpread(p, w, marker);
+    for (PetscInt i = 0; i < points; i++)
+      for (PetscInt k = 0; k < p->n; k++) marker[2 * k + i % 2] += p->to_markers[i / 2 * p->n + k] * w[i];
     RigidFitBack(&s->fit[v - l->own], 2, p->n, marker, W + 2 * LayoutOffset(l, v));
   }
   PetscCall(CoarseCorrectionApply(c->near, c->answer.force, c->answer.jump, W));
@@ -78,7 +79,7 @@ PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
   for (PetscInt v = l->own; v < l->end; v++) most = PetscMax(most, 2 * LayoutCount(l, v) + 2 * LayoutCount(coarse, v));
   PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->answer.force, most, &c->work));
   if (s->coupling->mobility->contrast) PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
-  PetscCall(CoarseCorrectionCreate(s->coupling->mobility, s->coarse, CORRECTION_VESICLES, &c->near));
+  PetscCall(CoarseCorrectionCreate(s->coupling->mobility, s->coarse, &c->near));
   PetscCall(CreateInteractionKSP(c, l));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -162,6 +162,8 @@ static PetscErrorCode InvertObstacles(void *block, const float x[], float y[]) {
 }
 
 static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
+  const InnerFluid inner = b->coupling->mobility->inner;
+  PetscBool done = PETSC_TRUE;
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorObstacles", &event));
@@ -172,7 +174,10 @@ static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
     PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
   else
     PetscCall(MakeObstacleInverse(b, failed));
-  if (b->free && !*failed) PetscCall(FreeBlockSetUp(b->free, InvertObstacles, b));
+  if (b->free && !*failed)
+    PetscCall(FreeBlockSetUp(b->free, b->age.made_for, inner ? inner->mass : NULL, InvertObstacles, b, &done));
+  if (b->obstacles->free->M && !*failed)
+    PetscCall(AgreeFlag(b->obstacles->layout->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,15 +188,10 @@ static PetscBool IsObstacleFactorOld(ObstacleBlock b) {
 }
 
 PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
-  const Coupling c = b->coupling;
-  const InnerFluid inner = c->mobility->inner;
-  PetscBool done = PETSC_TRUE;
   PetscFunctionBeginUser;
-  if (IsObstacleFactorOld(b) && AgeIsOver(&b->age, c->fluid->alpha, OBSTACLE_STEP_RATIO, ObstacleRenewalCost(b)))
+  if (IsObstacleFactorOld(b) &&
+      AgeIsOver(&b->age, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO, ObstacleRenewalCost(b)))
     PetscCall(MakeObstacleFactor(b, failed));
-  if (!b->obstacles->free->M || *failed) PetscFunctionReturn(PETSC_SUCCESS);
-  if (b->free) PetscCall(FreeBlockHold(b->free, c->fluid->alpha, inner ? inner->mass : NULL, c->forces, &done));
-  PetscCall(AgreeFlag(b->obstacles->layout->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

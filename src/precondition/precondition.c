@@ -17,21 +17,18 @@ static PetscReal BlockReach(Coupling c) {
 
 PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible, Preconditioner *out) {
   const Coupling c = u->coupling;
-  const Obstacles o = c->bodies->obstacles;
-  const PetscInt solid = BodiesObstacleNumbers(c->bodies);
   Preconditioner p;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&p));
   *out = p;
   p->unknowns = u;
   p->flexible = flexible;
-  p->step_ratio = scene->time.adapt == ADAPT_ERROR && !o ? ADAPTED_RATIO : OBSTACLE_STEP_RATIO;
-  PetscCall(PetscMalloc2(u->velocity + solid, &p->force, solid + (o ? FreeBodiesOwn(o) : 0), &p->kept));
-  if (o) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
+  p->step_ratio = scene->time.adapt == ADAPT_ERROR && !c->bodies->obstacles ? ADAPTED_RATIO : OBSTACLE_STEP_RATIO;
+  PetscCall(PetscMalloc1(u->velocity, &p->force));
+  if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
   if (c->mobility->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));
-    if (o && o->free->M) PetscCall(CrossingCreate(&scene->fluid, c->mobility, &p->crossing));
   } else if (CouplingHasMembrane(c)) {
     PetscCall(MeanMobilityCreate(&scene->fluid, c, BlockReach(c), &p->mobility));
     PetscCall(DenseBlocksCreate(c, &p->blocks));
@@ -44,12 +41,11 @@ PetscErrorCode PreconditionerDestroy(Preconditioner *preconditioner) {
   Preconditioner p = *preconditioner;
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CrossingDestroy(&p->crossing));
   PetscCall(SharedShapesDestroy(&p->shapes));
   PetscCall(ObstacleBlockDestroy(&p->solid));
   PetscCall(DenseBlocksDestroy(&p->blocks));
   PetscCall(MeanMobilityDestroy(&p->mobility));
-  PetscCall(PetscFree2(p->force, p->kept));
+  PetscCall(PetscFree(p->force));
   PetscCall(PetscFree(p->treading));
   PetscCall(PetscFree(*preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,7 +113,6 @@ PetscErrorCode PreconditionerSetUp(Preconditioner p, PetscBool graded) {
   p->failed = PETSC_FALSE;
   if (p->solid) PetscCall(ObstacleBlockSetUp(p->solid, &p->failed));
   if (p->shapes && !p->failed) PetscCall(SharedShapesFollow(p->shapes, &p->failed));
-  if (p->crossing && !p->failed) PetscCall(CrossingPlace(p->crossing));
   if (!p->blocks || p->failed) PetscFunctionReturn(PETSC_SUCCESS);
   DenseBlocksPlace(p->blocks);
   if (AreBlocksOver(p)) PetscCall(MakeBlocks(p));
@@ -144,27 +139,6 @@ static PetscErrorCode RenewUnderWay(Preconditioner p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Block Gauss-Seidel of obstacles and vesicles, whose residuals are V, sigma and behind V: the obstacles, the vesicles
-   in their flow, and what is left for the obstacles in the flow of the vesicles. */
-static PetscErrorCode SolveAcross(Preconditioner p, PetscScalar V[], PetscScalar sigma[]) {
-  const Unknowns u = p->unknowns;
-  const Bodies b = u->coupling->bodies;
-  const PetscInt n = u->velocity, w = BodiesObstacleNumbers(b), all = w + FreeBodiesOwn(b->obstacles);
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(p->kept, V + n, all));
-  PetscCall(ObstacleBlockBegin(p->solid, V + n, V));
-  PetscCall(ObstacleBlockEnd(p->solid, NULL, V + n));
-  PetscCall(PetscArrayzero(p->force, n));
-  PetscCall(PetscArraycpy(p->force + n, V + n, w));
-  PetscCall(CrossingApply(p->crossing, PETSC_TRUE, p->force, V));
-  PetscCall(SharedShapesSolve(p->shapes, V, sigma));
-  PetscCall(UnknownsForce(u, V, p->force));
-  PetscCall(PetscArrayzero(p->force + n, w));
-  PetscCall(CrossingApply(p->crossing, PETSC_FALSE, p->force, p->kept));
-  PetscCall(PetscArraycpy(V + n, p->kept, all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   const Unknowns u = p->unknowns;
   PetscScalar *V, *sigma;
@@ -175,9 +149,8 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(VecGetArray(z, &V));
   sigma = V + UnknownsEdges(u);
   UnknownsScale(u, PETSC_TRUE, V);
-  if (p->crossing) PetscCall(SolveAcross(p, V, sigma));
   if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
-  if (p->shapes && !p->crossing) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
+  if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
   if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
   if (p->solid && ObstacleBlockCoupled(p->solid)) PetscCall(UnknownsForce(u, V, p->force));
   if (p->solid) PetscCall(ObstacleBlockEnd(p->solid, p->force, V + u->velocity));

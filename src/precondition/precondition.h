@@ -2,7 +2,6 @@
    vesicles share one dense block; many vesicles have blocks of shared shapes with a coarse grid; obstacles have a block
    of their own. It also decides how long a dense block serves before it is made again. */
 #pragma once
-#include "precondition/crossing.h"
 #include "precondition/denseblocks.h"
 #include "precondition/obstacleblock.h"
 #include "precondition/sharedshapes.h"
@@ -23,15 +22,13 @@ struct _p_Preconditioner {
   DenseBlocks blocks;    /* few vesicles */
   SharedShapes shapes;   /* many vesicles */
   ObstacleBlock solid;   /* NULL without obstacles */
-  Crossing crossing;     /* NULL unless bodies move freely among many vesicles */
   PetscReal step_ratio;  /* largest ratio of two steps that share dense blocks */
   Age age;               /* of the dense blocks; without any, of the solves */
   PetscReal *treading;   /* [vesicles] the label speeds for which the blocks were made */
   Application now;
   PetscBool flexible; /* blocks may be made anew under way */
   PetscBool failed;   /* a block could not be factored */
-  PetscScalar *force; /* [2(n + w)] on the own vesicles, and obstacles, work */
-  PetscScalar *kept;  /* [2w + 3 own free] residuals of obstacles, work */
+  PetscScalar *force; /* [2n] of the own vesicles, work */
 };
 
 /* PreconditionerCreate - for the scene; flexible: for a KSP that allows a changing preconditioner. Collective. */
