@@ -268,13 +268,11 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
 /* Free bodies: largest = max(largest, that of places, or (rates) of velocities q at the farthest markers). */
 static PetscErrorCode MissBodies(Scheme s, Coupled *d, PetscInt count, PetscBool rates, PetscReal *largest) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const Vec x = rates ? d->next.solid : d->next.place;
+  const Vec x = rates ? d->next.solid : d->next.place, guess = d->history.guess[rates];
   PetscReal star[BDF_STATES];
   const PetscScalar *q;
-  Vec guess;
   PetscFunctionBeginUser;
   if (!d->place) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(x, &guess));
   BDFGuess(count, d->history.step, star);
   PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), guess));
   if (rates) {
@@ -284,7 +282,6 @@ static PetscErrorCode MissBodies(Scheme s, Coupled *d, PetscInt count, PetscBool
     PetscCall(VecRestoreArrayRead(guess, &q));
   } else
     *largest = PetscMax(*largest, ObstaclesStride(o, (Instant){.place = guess}, (Instant){.place = x}));
-  PetscCall(VecDestroy(&guess));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,6 +5,8 @@ PetscErrorCode HistoryCreate(Scheme s, History *h) {
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &h->treading));
   for (int j = 0; j < BDF_MOST + BDF_STATES; j++) PetscCall(VecDuplicate(s->state.X, &h->room[j]));
   PetscCall(VecDuplicate(s->state.sigma, &h->carried));
+  if (s->state.place) PetscCall(VecDuplicate(s->state.place, &h->guess[0]));
+  if (s->state.place) PetscCall(VecDuplicate(s->state.solid, &h->guess[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -13,6 +15,7 @@ PetscErrorCode HistoryDestroy(History *h) {
   PetscCall(PetscFree(h->treading));
   for (int j = 0; j < BDF_MOST + BDF_STATES; j++) PetscCall(VecDestroy(&h->room[j]));
   PetscCall(VecDestroy(&h->carried));
+  for (int k = 0; k < 2; k++) PetscCall(VecDestroy(&h->guess[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,6 +15,7 @@ typedef struct {
   Vec U[BDF_STATES];               /* velocities of the solved states, of one at least, carried along; borrowed */
   Vec room[BDF_MOST + BDF_STATES]; /* where X and U are when labels turn */
   Vec carried;                     /* edge vector: work */
+  Vec guess[2];                    /* of free bodies, work: a place, forces and velocities; NULL without */
 } History;
 
 /* HistoryCreate - for the scheme's vectors. Collective. */
