@@ -28,13 +28,13 @@ typedef struct _LayerCells {
   const FarCell *far;                  /* the closed form beyond; NULL: the kernel itself */
   PetscErrorCode (*find)(struct _LayerCells *cells, PetscInt v, PetscInt n); /* the sources of n markers of vesicle v */
   CurveLayer curve;
-  PetscReal ratio;
-  const PetscReal *X;     /* [2n] and whole vectors, as the next two */
-  PetscReal *density;     /* [2n] forces, or jumps */
-  PetscReal *normal;      /* [2n] n w, zero of forces */
-  PetscReal *strength;    /* [sources n] */
-  PaddedStencil *stencil; /* [sources n], not wrapped into the grid */
-  PetscReal *over;        /* [cells] 1/ratio inside vesicles, else 1; NULL: no contrast */
+  PetscReal ratio, level[2]; /* level: what the unit of lengths adds to the velocity of all sources */
+  const PetscReal *X;        /* [2n] and whole vectors, as the next two */
+  PetscReal *density;        /* [2n] forces, or jumps */
+  PetscReal *normal;         /* [2n] n w, zero of forces */
+  PetscReal *strength;       /* [sources n] */
+  PaddedStencil *stencil;    /* [sources n], not wrapped into the grid */
+  PetscReal *over;           /* [cells] 1/ratio inside vesicles, else 1; NULL: no contrast */
 } LayerCells;
 
 /* Second moments along and across are averaged over both ends where one component meets itself; from one to the other
@@ -111,9 +111,10 @@ static void LayerCellsExact(void *context, const CellRow *row, PetscInt i, const
   const LayerCells *s = (const LayerCells *)context;
   PetscBool inside = PETSC_FALSE;
   Lanes sum[3] = {{0}, {0}, {0}};
-  if (corrected)
+  if (corrected) {
     CurveLayerAdd(s->curve, at, found, &found[2], &inside);
-  else if (s->over)
+    for (int c = 0; c < 2; c++) found[c] += s->level[c];
+  } else if (s->over)
     inside = CurveLayerContains(s->curve, at);
   if (inside && s->over) s->over[cell] = 1 / s->ratio;
   for (PetscInt k = 0; k < row->n && corrected && !row->grid->free; k += LANES) {
@@ -187,6 +188,9 @@ static PetscErrorCode LayerCellsCorrect(LayerCells *s, Layout l, const PetscReal
       continue;
     s->ratio = ratio ? ratio[v] : 1;
     for (PetscInt k = 0; k < 2 * row.n && ratio; k++) s->density[k] *= 1 - ratio[v];
+    s->level[0] = s->level[1] = 0; /* CurveLayer has lengths as they are, pairs and lattice in the unit */
+    for (PetscInt k = 0; k < 2 * row.n && !g->free; k++)
+      s->level[k % 2] += s->kernel->level * PetscLogReal(s->set->unit) / s->set->nu * s->density[k];
     PetscCall(s->find(s, v, row.n));
     PetscCall(CurveLayerCreate(s->kernel, row.n, s->set->nu, s->X, s->density, &s->curve));
     PetscCall(CellRowCorrect(&row, &of, field));
