@@ -1,4 +1,4 @@
-/* The pull of a tension that turns with the edges (docs/membrane.md, The tension turns with the membrane). With the
+/* The pull of a tension that turns with the edges (docs/steps.md, The tension turns with the membrane). With the
    expected tension sigma >= 0 of the new time, which is zero where the force has just been placed, minus the force is
 
        K_sigma X - K_sigma X*,      K_sigma = MembraneVesiclePull,

@@ -1,4 +1,4 @@
-/* One unsplit step, backward Euler or BDF2 (docs/membrane.md, One step). */
+/* One unsplit step, backward Euler or BDF2 (docs/steps.md, One step). */
 #include "bodies/freebodies.h"
 #include "scheme/coupled.h"
 #include "scheme/stress.h"
@@ -13,7 +13,7 @@
     (s)->state.which, (s)->old[0].which, (s)->old[1].which, (s)->old[2].which, (s)->old[3].which, (s)->old[4].which    \
   }
 
-/* The unknowns of the membranes' law, extrapolated from the last two states, turn with the new edges (docs/membrane.md,
+/* The unknowns of the membranes' law, extrapolated from the last two states, turn with the new edges (docs/steps.md,
    The tension turns with the membrane). next.sigma is used for them. */
 static PetscErrorCode TurnEdges(Scheme s, Coupled *d) {
   History *h = &d->history;

@@ -1,4 +1,4 @@
-/* The parts of one unsplit step of backward Euler or BDF (docs/membrane.md). */
+/* The parts of one unsplit step of backward Euler or BDF (docs/steps.md). */
 #pragma once
 #include "krylov/solver.h"
 #include "fluid/stokes/convection.h"

@@ -1,5 +1,5 @@
 /* Velocity and pressure of the state of a scheme whose steps leave them to be made when they are asked for: a step
-   needs neither on the grid where fluid/stokes/stream.h gives the velocity (docs/membrane.md, One step). All is
+   needs neither on the grid where fluid/stokes/stream.h gives the velocity (docs/steps.md, One step). All is
    collective. */
 #pragma once
 #include "scheme/stepcommon.h"

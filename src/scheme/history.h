@@ -1,5 +1,5 @@
 /* The states that a step goes on from: the present state and those before it. Labels turn with the tank-treading
-   membranes (docs/membrane.md, Frame of the labels), so that a steady shape is the same in all states. */
+   membranes (docs/steps.md, Frame of the labels), so that a steady shape is the same in all states. */
 #pragma once
 #include "scheme/bdf.h"
 #include "scheme/stepcommon.h"

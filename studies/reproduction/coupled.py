@@ -88,7 +88,7 @@ def _energy(results: Results, folder: Path) -> list[str]:
     about = (
         f"h = 1/32, 36 markers, {study.STEPS_OF_ENERGY_RUN} steps, tolerances 1e-12 unless given. On and off: the length target. In brackets an\n"
         "independent NumPy prototype (its coupled runs stop at 1e-8 or so). `stopped`: a solve failed, or the membrane crossed itself. Runs of split that blow up depend on\n"
-        "rounding. With order 2 the energy that never rises is the G-norm's ([membrane.md](../membrane.md#energy)), not this one.\n"
+        "rounding. With order 2 the energy that never rises is the G-norm's ([steps.md](../steps.md#energy)), not this one.\n"
         "coupled_energy.csv also has lengths and areas.\n\n"
         "Largest change of E/E_0 in a step (negative: it fell in every step):\n"
     )
@@ -98,7 +98,7 @@ def _energy(results: Results, folder: Path) -> list[str]:
         *block("rise", ("split", "1_loose", "1", "1_target"), "+.1e"),
         *block("rise", ("2", "2_euler", "2_target", "2_target_euler"), "+.1e"),
         "Where dt is far above the membrane's own time, a step of order 2 extrapolates a motion that has ended within it. Such steps are made\n"
-        "again by backward Euler ([membrane.md](../membrane.md#which-order)); the prototype does not do that.\n",
+        "again by backward Euler ([steps.md](../steps.md#which-order)); the prototype does not do that.\n",
         "E/E_0 after the last step:\n",
         *block("ratio", ("split", "1", "1_target", "2", "2_target"), ".3g"),
     ]
