@@ -357,6 +357,7 @@ static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   *overshot = PETSC_FALSE;
   if (d->order == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &began));
+  PetscCall(MissBodies(s, d, 1, PETSC_FALSE, &began));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &began, 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   PetscCall(CoupledEstimate(s, &error));
   *overshot = error > FAR * began / SmallestRadius(s) && error > STILL ? PETSC_TRUE : PETSC_FALSE;

@@ -110,6 +110,16 @@ def test_discs_that_pass(tmp_path):
         assert place == pytest.approx(sign * np.array(EXACT["passing"]), abs=1e-6)
 
 
+def test_discs_that_move_beside_a_vesicle_that_hardly_does(tmp_path):
+    """A step of 0.05, in which discs go a tenth of their radius, is not made again by backward Euler as one too long."""
+    options = "-domain_box 0,8,0,8 -domain_cells 96,96 -vesicle_center 6.8,6.8 -vesicle_area 1 -vesicle_bending .1"
+    options += " -obstacle_shape posts -obstacle_radius .5,.3 -obstacle_center 2,2.2,2.95,2 -obstacle_free all"
+    options += " -obstacle_force 20,0,-20,0 -obstacle_torque 1,0 -vesicle_reduced_area .98 -time_step .05 -time_end 1"
+    series = run_petves(tmp_path, options).series
+    place = [series[f"obstacle_center_{name}"][-1] for name in ("x_1", "y_2")]
+    assert place == pytest.approx([2.50344, 1.82172], abs=2e-3)  # with steps of 0.003
+
+
 def test_a_disc_settles_in_a_channel(tmp_path):
     """Under a force, and under its weight, along a channel at no flux; the force is that of a disc that is moved."""
     channel = f"{CHANNEL} -domain_cells 96,32 -flow_drive flux -obstacle_free all -obstacle_radius .1"
