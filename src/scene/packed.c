@@ -57,16 +57,15 @@ static PetscErrorCode PackedNumber(const Kinds *kinds, Pose pose[]) {
 }
 
 /* clang-format off */
-static PetscErrorCode PackedCheck(Scene s) {
-  const ScenePosts *posts = &s->obstacles.posts;
+static PetscErrorCode PackedCheckPosts(Scene s) {
   const SceneRule rules[] = {
-    {posts->count && s->vesicles.packing == 0 && s->vesicles.shape != SHAPE_NONE,
+    {s->vesicles.packing == 0 && s->vesicles.shape != SHAPE_NONE,
      "-obstacle_count {-obstacle_count}: posts are packed, and the vesicles are not; allowed: -vesicle_packing, -vesicle_shape none, or -obstacle_center"},
-    {posts->count && s->vesicles.packing > 0 && s->vesicles.packing_type == PACKING_LATTICE,
+    {s->vesicles.packing > 0 && s->vesicles.packing_type == PACKING_LATTICE,
      "-obstacle_count {-obstacle_count}: not with -vesicle_packing_type lattice; allowed: random"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, rules));
-  if (posts->count) PetscCall(SceneCheckList(s, "-obstacle_radius", s->obstacles.radius.n, 1, posts->count, "obstacles", "each"));
+  PetscCall(SceneCheckList(s, "-obstacle_radius", s->obstacles.radius.n, 1, s->obstacles.posts.count, "obstacles", "each"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,7 +122,7 @@ static PetscErrorCode ScenePack(Draft scene, const Kinds *kinds, PetscInt posts,
 PetscErrorCode ScenePlace(Draft scene, const Kinds *kinds, Pose pose[]) {
   const PetscInt posts = scene->obstacles.shape == OBSTACLE_POSTS ? scene->obstacles.posts.count : 0;
   PetscFunctionBeginUser;
-  PetscCall(PackedCheck(scene));
+  if (posts) PetscCall(PackedCheckPosts(scene));
   if (posts || (scene->vesicles.packing > 0 && scene->vesicles.shape == SHAPE_ELLIPSE)) {
     PetscCall(ScenePack(scene, kinds, posts, pose));
     PetscFunctionReturn(PETSC_SUCCESS);
