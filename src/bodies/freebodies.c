@@ -32,58 +32,40 @@ void FreeBodiesRows(Obstacles o, const PetscReal load[], const PetscScalar x[], 
   for (PetscInt b = l->own; b < l->end; b++) {
     if (!o->motion[b].free) continue;
     const BodyPose p = MotionPose(&o->motion[b], o->at);
+    const PetscReal *X = o->X + 2 * l->start[b];
     const PetscScalar *q = x + FreeBodyAt(o, b);
-    PetscScalar *sum = y + FreeBodyAt(o, b);
-    for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
-      const PetscReal *F = x + 2 * (k - l->first), dx = o->X[2 * k] - p.center[0], dy = o->X[2 * k + 1] - p.center[1];
-      PetscScalar *u = y + 2 * (k - l->first);
-      u[0] += o->ratio[b] * (q[0] - q[2] * dy);
-      u[1] += o->ratio[b] * (q[1] + q[2] * dx);
-      sum[0] += F[0];
-      sum[1] += F[1];
-      sum[2] += dx * F[1] - dy * F[0];
+    PetscScalar *u = y + 2 * LayoutOffset(l, b);
+    MotionSum(p.center, LayoutCount(l, b), X, x + 2 * LayoutOffset(l, b), y + FreeBodyAt(o, b));
+    for (PetscInt k = 0; k < 2 * LayoutCount(l, b); k += 2) {
+      u[k] += o->ratio[b] * (q[0] - q[2] * (X[k + 1] - p.center[1]));
+      u[k + 1] += o->ratio[b] * (q[1] + q[2] * (X[k] - p.center[0]));
     }
   }
 }
 
-void FreeBodySum(PetscInt n, const PetscReal X[], const PetscScalar F[], PetscReal sum[3]) {
-  (void)PetscArrayzero(sum, 3);
-  for (PetscInt k = 0; k < 2 * n; k += 2) {
-    sum[0] += F[k];
-    sum[1] += F[k + 1];
-    sum[2] += X[k] * F[k + 1] - X[k + 1] * F[k];
-  }
-}
-
 /* A force alike on all markers, and a turn about their mean. */
-void FreeBodyBalance(PetscInt n, const PetscReal X[], const PetscReal s[3], PetscScalar F[]) {
-  PetscReal mean[2] = {0, 0}, squares = 0, sum[3];
-  FreeBodySum(n, X, F, sum);
+void FreeBodyBalance(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal s[3],
+                     PetscScalar F[]) {
+  PetscReal mean[2] = {0, 0}, squares = 0, sum[3] = {0, 0, 0};
+  MotionSum(center, n, X, F, sum);
   const PetscReal push[2] = {(s[0] - sum[0]) / n, (s[1] - sum[1]) / n};
-  for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += X[k] / n;
-  for (PetscInt k = 0; k < 2 * n; k++) squares += PetscSqr(X[k] - mean[k % 2]);
+  for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += (X[k] - center[k % 2]) / n;
+  for (PetscInt k = 0; k < 2 * n; k++) squares += PetscSqr(X[k] - center[k % 2] - mean[k % 2]);
   const PetscReal turn = (s[2] - sum[2] - n * (mean[0] * push[1] - mean[1] * push[0])) / squares;
   for (PetscInt k = 0; k < 2 * n; k += 2) {
-    F[k] += push[0] - turn * (X[k + 1] - mean[1]);
-    F[k + 1] += push[1] + turn * (X[k] - mean[0]);
+    F[k] += push[0] - turn * (X[k + 1] - center[1] - mean[1]);
+    F[k + 1] += push[1] + turn * (X[k] - center[0] - mean[0]);
   }
 }
 
-PetscErrorCode FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
+void FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
   const Layout l = o->layout;
-  PetscReal *X;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * l->n, &X));
   for (PetscInt b = l->own; b < l->end; b++) {
-    const PetscInt n = LayoutCount(l, b), at = 2 * LayoutOffset(l, b);
     const BodyPose p = MotionPose(&o->motion[b], o->at);
     if (!o->motion[b].free) continue;
     const PetscReal *own = load + FreeBodyAt(o, b) - 2 * l->n, s[] = {-own[0], -own[1], -own[2]};
-    for (PetscInt k = 0; k < 2 * n; k++) X[k] = o->X[2 * l->start[b] + k] - p.center[k % 2];
-    FreeBodyBalance(n, X, s, F + at);
+    FreeBodyBalance(p.center, LayoutCount(l, b), o->X + 2 * l->start[b], s, F + 2 * LayoutOffset(l, b));
   }
-  PetscCall(PetscFree(X));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscReal FreeBodiesSpeed(Obstacles o, const PetscScalar x[]) {

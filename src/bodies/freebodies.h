@@ -22,12 +22,12 @@ PETSC_EXTERN PetscErrorCode FreeBodiesCreateVecs(Obstacles obstacles, Vec *force
 PETSC_EXTERN void FreeBodiesRows(Obstacles obstacles, const PetscReal load[], const PetscScalar x[], PetscScalar y[]);
 PETSC_EXTERN PetscErrorCode FreeBodiesShift(Obstacles obstacles, Vec place, Vec from, PetscReal d[]);
 
-/* FreeBodySum - sum[3] = R^T F of one body of n markers, X[2n] from its center. FreeBodyBalance - F += the rigid part
-   by which R^T F becomes s[3]. FreeBodiesBalance - the same of own bodies where they have been placed, by which R^T F
-   becomes minus the load[3 own free], of F[2w]. Not collective. */
-PETSC_EXTERN void FreeBodySum(PetscInt n, const PetscReal X[], const PetscScalar F[], PetscReal sum[3]);
-PETSC_EXTERN void FreeBodyBalance(PetscInt n, const PetscReal X[], const PetscReal s[3], PetscScalar F[]);
-PETSC_EXTERN PetscErrorCode FreeBodiesBalance(Obstacles obstacles, const PetscReal load[], PetscScalar F[]);
+/* FreeBodyBalance - F += the rigid part by which R^T F (MotionSum) of one body becomes s[3]. FreeBodiesBalance - F[2w]
+   += the rigid parts by which R^T F of own bodies, where they have been placed, becomes minus the load[3 own free]. Not
+   collective. */
+PETSC_EXTERN void FreeBodyBalance(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal s[3],
+                                  PetscScalar F[]);
+PETSC_EXTERN void FreeBodiesBalance(Obstacles obstacles, const PetscReal load[], PetscScalar F[]);
 
 /* FreeBodiesSpeed - the largest speed of a marker of own bodies that move with the q of such an array (length/time).
    Not collective. */

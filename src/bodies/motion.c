@@ -54,3 +54,11 @@ PetscReal MotionStride(const BodyMotion *m, Instant from, Instant to, PetscReal 
   const PetscReal way = PetscHypotReal(b.center[0] - a.center[0], b.center[1] - a.center[1]);
   return way + (m->turned ? PetscAbsReal(b.angle - a.angle) * reach : 0);
 }
+
+void MotionSum(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal F[], PetscReal sum[3]) {
+  for (PetscInt k = 0; k < 2 * n; k += 2) {
+    sum[0] += F[k];
+    sum[1] += F[k + 1];
+    sum[2] += (X[k] - center[0]) * F[k + 1] - (X[k + 1] - center[1]) * F[k];
+  }
+}

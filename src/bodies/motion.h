@@ -36,8 +36,10 @@ PETSC_EXTERN BodyPose MotionPose(const BodyMotion *motion, Instant at);
 /* MotionCarry - the n markers X at an instant from those at rest, at time 0. MotionVelocity - the velocity U at an
    instant of the body where X is. MotionTurn - n vectors F of the body as it stands at one instant become those of the
    same body at another one. MotionStride - the farthest way of a point at the distance `reach` from the center, from
-   one instant to another. */
+   one instant to another. MotionSum - sum[3] += R^T F, force and torque about a center of F[2n] at X[2n]. */
 PETSC_EXTERN void MotionCarry(const BodyMotion *motion, Instant at, PetscInt n, const PetscReal rest[], PetscReal X[]);
 PETSC_EXTERN void MotionVelocity(const BodyMotion *motion, Instant at, const PetscReal X[2], PetscReal U[2]);
 PETSC_EXTERN void MotionTurn(const BodyMotion *motion, Instant from, Instant to, PetscInt n, PetscReal F[]);
 PETSC_EXTERN PetscReal MotionStride(const BodyMotion *motion, Instant from, Instant to, PetscReal reach);
+PETSC_EXTERN void MotionSum(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal F[],
+                            PetscReal sum[3]);

@@ -333,13 +333,10 @@ PetscErrorCode ObstaclesLoads(Obstacles o, Instant at, const PetscScalar F[], Ob
   PetscCall(PetscMalloc1(2 * l->M, &all));
   for (PetscInt b = l->own; b < l->end; b++) {
     const BodyPose p = MotionPose(&o->motion[b], at);
+    PetscReal sum[3] = {0, 0, 0};
     ObstacleCarry(o, b, at, all);
-    for (PetscInt k = l->start[b]; k < l->start[b + 1]; k++) {
-      const PetscReal *f = F + 2 * (k - l->first), *X = all + 2 * k;
-      load[b].force[0] += f[0];
-      load[b].force[1] += f[1];
-      load[b].torque += (X[0] - p.center[0]) * f[1] - (X[1] - p.center[1]) * f[0];
-    }
+    MotionSum(p.center, LayoutCount(l, b), all + 2 * l->start[b], F + 2 * LayoutOffset(l, b), sum);
+    load[b] = (ObstacleLoad){{sum[0], sum[1]}, sum[2]};
   }
   PetscCall(PetscFree(all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)(3 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));

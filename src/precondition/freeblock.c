@@ -37,12 +37,15 @@ PetscErrorCode FreeBlockDestroy(FreeBlock *block) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static const PetscReal origin[2] = {0, 0}; /* of arms */
+
 /* R^T F of all free bodies. */
 static void FreeBlockSums(FreeBlock b, const PetscScalar F[], PetscReal sum[]) {
   const Layout l = b->obstacles->layout;
+  (void)PetscArrayzero(sum, b->m);
   for (PetscInt body = 0; body < l->bodies; body++) {
     const PetscInt free = b->obstacles->motion[body].free, at = 2 * l->start[body];
-    if (free) FreeBodySum(LayoutCount(l, body), b->arm + at, F + at, sum + 3 * (free - 1));
+    if (free) MotionSum(origin, LayoutCount(l, body), b->arm + at, F + at, sum + 3 * (free - 1));
   }
 }
 
@@ -90,7 +93,7 @@ PetscErrorCode FreeBlockSolve(FreeBlock b, const float from[], PetscScalar q[], 
   for (PetscInt j = 0; j < b->m; j++) q[j] += b->inertia[j] * b->sum[j]; /* R^T F */
   for (PetscInt body = 0; body < o->layout->bodies; body++) {
     const PetscInt first = 3 * (o->motion[body].free - 1), at = 2 * o->layout->start[body];
-    if (first >= 0) FreeBodyBalance(LayoutCount(o->layout, body), b->arm + at, q + first, F + at);
+    if (first >= 0) FreeBodyBalance(origin, LayoutCount(o->layout, body), b->arm + at, q + first, F + at);
   }
   for (PetscInt j = 0; j < b->m; j++) q[j] = b->sum[j] * b->over[j];
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -56,17 +56,6 @@ static PetscErrorCode CarryBodies(Scheme s, Coupled *d, const PetscReal weight[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where free bodies are without their new q, and the way there from where they have been placed. No load yet.
-   next.place is used for it. */
-static PetscErrorCode KnownLoads(Scheme s, Coupled *d) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  PetscFunctionBeginUser;
-  PetscCall(CarryBodies(s, d, d->adams.history, d->next.place));
-  PetscCall(FreeBodiesShift(o, d->next.place, d->place, d->shift));
-  PetscCall(PetscArrayzero(d->load, FreeBodiesOwn(o)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The loads of free bodies, less the push that has been found; in fluid with inertia, which starts without loads, with
    the history of their momentum. next.solid is used for it. */
 static PetscErrorCode KnownForces(Scheme s, Coupled *d, const BDF *b) {
@@ -94,7 +83,11 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(ForcingClear(f));
   PetscCall(Past(s, d, b));
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
-  if (d->place) PetscCall(KnownLoads(s, d));
+  if (d->place) { /* next.place: without the new q */
+    PetscCall(CarryBodies(s, d, d->adams.history, d->next.place));
+    PetscCall(FreeBodiesShift(obstacles, d->next.place, d->place, d->shift));
+    PetscCall(PetscArrayzero(d->load, FreeBodiesOwn(obstacles)));
+  }
   PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->shift, d->force, d->load));
   if (d->place) PetscCall(KnownForces(s, d, b));
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
@@ -120,7 +113,7 @@ static PetscErrorCode InitialGuess(Scheme s, Coupled *d) {
   if (n->solid) PetscCall(HistorySum(count, weight, 1, STATES(s, solid), n->solid));
   if (n->place && s->fluid->steady) {
     PetscCall(VecGetArray(n->solid, &F));
-    PetscCall(FreeBodiesBalance(s->coupling->bodies->obstacles, d->load, F));
+    FreeBodiesBalance(s->coupling->bodies->obstacles, d->load, F);
     PetscCall(VecRestoreArray(n->solid, &F));
   }
   PetscCall(HistoryEdges(h, s->membrane, count, weight, STATES(s, sigma), n->sigma));
