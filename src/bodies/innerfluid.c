@@ -42,7 +42,7 @@ PetscErrorCode InnerFluidCreate(Obstacles o, PetscReal h, PetscReal smoothed, In
   PetscCall(PetscNew(&f));
   *out = f;
   f->obstacles = o;
-  PetscCall(PetscCalloc2(l->bodies + 1, &f->start, 3 * o->free->M, &f->mass));
+  PetscCall(PetscCalloc3(l->bodies + 1, &f->start, 3 * o->free->M, &f->mass, 3 * o->free->M, &f->sum));
   for (PetscInt b = 0; b < l->bodies; b++) {
     const PetscInt rings = o->motion[b].free ? 1 + (PetscInt)(ObstacleRadius(o, b) / h) : 0;
     f->start[b + 1] = f->start[b] + rings * LayoutCount(l, b);
@@ -59,7 +59,7 @@ PetscErrorCode InnerFluidDestroy(InnerFluid *inner) {
   InnerFluid f = *inner;
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2(f->start, f->mass));
+  PetscCall(PetscFree3(f->start, f->mass, f->sum));
   PetscCall(PetscFree4(f->rest, f->X, f->weight, f->turn));
   PetscCall(PetscFree(*inner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,12 +75,12 @@ void InnerFluidPlace(InnerFluid f) {
 
 PetscErrorCode InnerFluidAdd(InnerFluid f, PetscReal alpha, const PetscReal g[], PetscReal rate[]) {
   const Obstacles o = f->obstacles;
-  PetscReal *sum;
+  const PetscInt n = 3 * o->free->M;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(3 * o->free->M, &sum));
+  PetscCall(PetscArrayzero(f->sum, n));
   for (PetscInt b = 0; b < o->layout->bodies; b++) {
     const BodyPose p = MotionPose(&o->motion[b], o->at);
-    PetscReal *own = sum + 3 * PetscMax(o->motion[b].free - 1, 0);
+    PetscReal *own = f->sum + 3 * PetscMax(o->motion[b].free - 1, 0);
     for (PetscInt k = f->start[b]; k < f->start[b + 1]; k++) {
       const PetscReal dx = f->X[2 * k] - p.center[0], dy = f->X[2 * k + 1] - p.center[1];
       own[0] += f->weight[k] * g[2 * k];
@@ -88,8 +88,7 @@ PetscErrorCode InnerFluidAdd(InnerFluid f, PetscReal alpha, const PetscReal g[],
       own[2] += f->turn[k] * (dx * g[2 * k + 1] - dy * g[2 * k]);
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(3 * o->free->M), MPIU_REAL, MPI_SUM, o->layout->comm));
-  for (PetscInt k = 0; k < 3 * o->free->M; k++) rate[k] += alpha * sum[k];
-  PetscCall(PetscFree(sum));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, f->sum, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, o->layout->comm));
+  for (PetscInt k = 0; k < n; k++) rate[k] += alpha * f->sum[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

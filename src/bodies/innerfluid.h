@@ -34,6 +34,7 @@ struct _p_InnerFluid {
   PetscReal *weight;   /* [n] of the integral (length^2) */
   PetscReal *turn;     /* [n] of the integral for the rotation */
   PetscReal *mass;     /* [3 free] M over the fluid's density */
+  PetscReal *sum;      /* [3 free] work */
 };
 
 /* InnerFluidCreate - of the free bodies among the obstacles, with points about h apart. InnerFluidPlace - X where the

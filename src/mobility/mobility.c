@@ -166,30 +166,23 @@ PetscErrorCode MobilityBegin(Mobility m, const MobilityKnown *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rate += INT_inside R^T (alpha u - uhat), u the velocity of the flow that has been made. */
-static PetscErrorCode MobilityFollowInner(Mobility m) {
-  const StreamPast *past = m->known->past;
-  PetscFunctionBeginUser;
-  if (!m->inner) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecAXPBY(m->sum, m->fluid->alpha, 0, past->made));
-  for (PetscInt j = 0; j < past->count; j++) PetscCall(VecAXPY(m->sum, -past->weight[j], past->flow[j]));
-  PetscCall(StreamFlowsVelocity(m->stream->flows, m->sum, m->field));
-  PetscCall(MarkersInterpolate(m->markers, m->field, NULL));
-  PetscCall(MobilityAddInner(m, 1, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* In fluid with inertia: the flow of the step gets that of the states before and of all forces (the first time) or that
    of the forces F; U = E u. What is measured is then a sum; that of divergences is a bound. */
 static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
-  const MobilityKnown *q = m->known;
+  const StreamPast *past = m->known->past;
   StreamMeasures more;
   PetscFunctionBeginUser;
   if (m->added == 1) {
-    PetscCall(MarkersFollow(m->markers, m->stream, NULL, q->f, q->past, m->flow, &m->measures));
-    PetscCall(MobilityFollowInner(m));
+    PetscCall(MarkersFollow(m->markers, m->stream, NULL, m->known->f, past, m->flow, &m->measures));
+    if (m->inner) { /* alpha u - uhat */
+      PetscCall(VecAXPBY(m->sum, m->fluid->alpha, 0, past->made));
+      for (PetscInt j = 0; j < past->count; j++) PetscCall(VecAXPY(m->sum, -past->weight[j], past->flow[j]));
+      PetscCall(StreamFlowsVelocity(m->stream->flows, m->sum, m->field));
+      PetscCall(MarkersInterpolate(m->markers, m->field, NULL));
+      PetscCall(MobilityAddInner(m, 1, PETSC_TRUE));
+    }
   } else {
-    PetscCall(MarkersAddFlow(m->markers, m->stream, -1 / PetscSqr(m->fluid->grid->h), F, U, q->past->made, &more));
+    PetscCall(MarkersAddFlow(m->markers, m->stream, -1 / PetscSqr(m->fluid->grid->h), F, U, past->made, &more));
     PetscCall(MobilityAddInner(m, m->fluid->alpha, PETSC_TRUE));
     PetscCall(VecAXPY(m->flow, MobilityGridPart(m, m->fluid->alpha), U));
     m->measures.divergence += more.divergence;

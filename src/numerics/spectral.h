@@ -30,7 +30,7 @@ PETSC_EXTERN PetscReal SpectralTail(Spectral spectral, PetscReal part, const Pet
 PETSC_EXTERN void SpectralShift(Spectral spectral, int each, PetscReal phi, const PetscScalar X[], PetscScalar Y[]);
 
 /* TrigonometricCardinal - the trigonometric polynomial of n points that is 1 at the angle t = 0 and 0 at the other
-   points. TrigonometricPoints - Y[2 times n], `times` as many points on the curve through the points X[2n].
-   Not collective. */
+   points. TrigonometricPoints - Y[2 times n], `times` as many points on the curve through the points X[2n]. Not
+   collective. */
 PETSC_EXTERN PetscReal TrigonometricCardinal(PetscInt n, PetscReal t);
 PETSC_EXTERN void TrigonometricPoints(PetscInt n, const PetscReal X[], PetscInt times, PetscReal Y[]);

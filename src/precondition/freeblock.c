@@ -81,10 +81,9 @@ PetscErrorCode FreeBlockSetUp(FreeBlock b, PetscReal a0, const PetscReal mass[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FreeBlockSolve(FreeBlock b, const float from[], PetscScalar q[], PetscScalar F[]) {
+PetscErrorCode FreeBlockSolve(FreeBlock b, PetscScalar q[], PetscScalar F[]) {
   const Obstacles o = b->obstacles;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < b->n; k++) F[k] = from[k];
   FreeBlockSums(b, F, b->sum);
   for (PetscInt j = 0; j < b->m; j++) b->sum[j] -= q[j];
   PetscCall(DenseSolve(b->m, b->S, b->pivot, PETSC_FALSE, 1, b->sum));

@@ -18,10 +18,10 @@ typedef struct _p_FreeBlock *FreeBlock;
 typedef PetscErrorCode FreeBlockInverse(void *context, const float x[], float y[]);
 
 /* FreeBlockCreate - for the free bodies among the obstacles. FreeBlockSetUp - where they have been placed, with this
-   A^-1 and mass[3 free] (NULL: 0); done is false where the small matrix is singular. FreeBlockSolve - from[2W] is A^-1
-   r, q[3 free] is s: q becomes the velocities, F[2W] the forces. Not collective. */
+   A^-1 and mass[3 free] (NULL: 0); done is false where the small matrix is singular. FreeBlockSolve - q[3 free] is
+   s and becomes the velocities, F[2W] is A^-1 r and becomes the forces. Not collective. */
 PETSC_EXTERN PetscErrorCode FreeBlockCreate(Obstacles obstacles, FreeBlock *block);
 PETSC_EXTERN PetscErrorCode FreeBlockDestroy(FreeBlock *block);
 PETSC_EXTERN PetscErrorCode FreeBlockSetUp(FreeBlock block, PetscReal a0, const PetscReal mass[],
                                            FreeBlockInverse *inverse, void *context, PetscBool *done);
-PETSC_EXTERN PetscErrorCode FreeBlockSolve(FreeBlock block, const float from[], PetscScalar q[], PetscScalar F[]);
+PETSC_EXTERN PetscErrorCode FreeBlockSolve(FreeBlock block, PetscScalar q[], PetscScalar F[]);

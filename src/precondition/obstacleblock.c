@@ -302,7 +302,7 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
     if (root) PetscCall(DenseSingleMultAdd(PETSC_FALSE, w, m, -1, b->response, b->single, b->to));
   }
   for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
-  if (b->free) PetscCall(FreeBlockSolve(b->free, b->to, b->rates, b->all));
+  if (b->free) PetscCall(FreeBlockSolve(b->free, b->rates, b->all));
   PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
   PetscCall(LayoutFromRank(b->obstacles->free, b->root, 3, b->rates, solid + 2 * l->n));
   ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->at, solid);

@@ -79,9 +79,10 @@ static inline BDF BDFCoefficients(PetscInt order, const PetscReal step[]) {
 
 /* Adams formulas with variable steps, for what moves with a rate q that depends on its place: from the present y,
 
-       y* = y + SUM star_j q_j,     y_new = y + end q_new + SUM history_j q_j,
+       y* = y + SUM star_j q_j,     y_new = y + end q_new + SUM history_j q_j.
 
-   integrals over the step of the polynomials through the rates of the states, without and with the new one (time). */
+   The sums are the integrals over the step of the polynomials through the rates of the states, without and with the
+   new one. */
 typedef struct {
   PetscInt known;           /* states whose rates are used: 0 (y* = y, backward Euler) to BDF_MOST */
   PetscReal star[BDF_MOST]; /* (time) */

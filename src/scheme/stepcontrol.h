@@ -34,8 +34,7 @@ typedef struct {
 typedef enum { STEP_ACCEPT, STEP_REPEAT, STEP_GIVE_UP } StepVerdict;
 
 /* StepPolicyCreate - the policy of a scene with so many vesicles and free bodies. Without, steps are fixed: the error
-   estimate is theirs. Not
-   collective. */
+   estimate is theirs. Not collective. */
 PETSC_EXTERN StepPolicy StepPolicyCreate(Scene scene, PetscInt bodies);
 
 /* StepFirstLevel - the level of an adaptive run's first step. */
