@@ -59,7 +59,7 @@ def described(binary: str) -> list[Option]:
 def row(option: Option) -> str:
     """Return an option's row of a table."""
     default = f"`{option.default}`" if option.default else ""
-    what = option.what.replace("|", chr(92) + "|")
+    what = re.sub(r"([|*])", r"\\\1", option.what)
     return f"| `{option.name}` | {default} | {option.allowed.replace('|', ', ')} | {what} |"
 
 
