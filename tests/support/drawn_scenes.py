@@ -162,7 +162,10 @@ class Draw:
             self.membranes(len(vesicles), R0, nu, bending)
         if kind != "none" and self.text["fluid_inertia"] != "none":  # with shorter steps vesicles beside solids grow
             times = self.numbers.keys() & {"time_step", "time_end", "output_every", "time_adapt_max_step"}
-            self.numbers |= {name: self.numbers[name] * max(1, 0.64 * h**2 / (nu * step)) for name in times}
+            longer = max(1, 0.64 * h**2 / (nu * step))
+            self.numbers |= {name: self.numbers[name] * longer for name in times}
+            if longer > 1 and self.text.pop("time_cfl_limit", ""):  # too long for convection
+                self.text["fluid_inertia"] = "unsteady"
         if kind != "none":
             self.bodies(kind, found, rate)
         return Scene(self.numbers, self.text, vesicles, [] if kind in ("none", "posts") else found, kind)
