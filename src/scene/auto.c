@@ -136,7 +136,7 @@ static PetscErrorCode StartIsResolved(Scene scene, PetscBool *resolved) {
 
 PetscErrorCode SceneChooseMarkers(Draft scene) {
   const PetscReal h = FluidSpecCellSize(&scene->fluid);
-  PetscBool resolved = PETSC_FALSE, grows = VesicleSqueeze(scene) > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool resolved = PETSC_FALSE, stretches = PETSC_FALSE;
   PetscInt n = 0, most = PETSC_MAX_INT;
   PetscFunctionBeginUser;
   if (scene->scheme.wanted == 0 || !scene->shape.vesicles || SceneGiven(scene, "-vesicle_markers") ||
@@ -147,10 +147,10 @@ PetscErrorCode SceneChooseMarkers(Draft scene) {
     const PetscReal length = 2 * PETSC_PI * ShapeRadius(&scene->shape, v);
     n = PetscMax(n, scene->shape.start[v + 1] - scene->shape.start[v]);
     most = PetscMin(most, (PetscInt)(length / (NEAR_LEAST_SPACING * h)));
-    if (scene->membrane.material[v].modulus > 0) grows = PETSC_TRUE;
+    if (scene->membrane.material[v].modulus > 0) stretches = PETSC_TRUE;
   }
   most = PetscMin(most, MOST_FINER * n);
-  const PetscInt least = grows ? PetscMin(most, 3 * n / 2) - 1 : 0;
+  const PetscInt least = stretches || VesicleSqueeze(scene) > 0 ? PetscMin(most, 3 * n / 2) - 1 : 0;
   for (;;) {
     PetscCall(StartIsResolved(scene, &resolved));
     if ((resolved && n >= least) || n >= most - 1) break;

@@ -177,6 +177,21 @@ def test_an_inclusion_within_the_wanted_error(tmp_path):
     assert found == pytest.approx(exact, rel=1e-3)
 
 
+def test_a_disc_passes_a_constriction(tmp_path):
+    """Between bumps of many markers, which rest on the walls: the preconditioner knows both."""
+    x = np.linspace(-3, 3, 257)
+    bump = -1 + 0.2 * (1 + np.cos(np.pi * x / 3))
+    disc = np.column_stack([0.15 * f(np.linspace(0, 2 * np.pi, 97)[:-1]) for f in (np.cos, np.sin)]) - [3.4, -0.1]
+    curves = [np.column_stack([x[::-1], bump[::-1]]), np.column_stack([x, -bump]), disc]
+    text = "\n".join("".join(f"{a!r} {b!r}\n" for a, b in c.tolist()) for c in curves)
+    text = "# open\n" + text.replace("\n\n", "\n\n# open\n", 1)
+    (tmp_path / "curves.txt").write_text(text)
+    options = "-vesicle_shape none -domain_box -4,4,-1,1 -domain_cells 400,100 -domain_bc_x periodic"
+    options += " -flow_type poiseuille -flow_half_width 1 -obstacle_shape file -obstacle_free 3 -time_step .01"
+    options += f" -obstacle_file {tmp_path / 'curves.txt'} -time_end .03"
+    assert run_petves(tmp_path / "run", options).series["coupled_its"].max() <= 4
+
+
 def test_a_packing_of_discs_and_vesicles(tmp_path):
     """At random, none touches another; resolved.opts packs it again; the same on three ranks."""
     options = "-domain_box 0,4,0,4 -domain_cells 48,48 -domain_bc_x periodic -flow_type shear -vesicle_packing .2"
