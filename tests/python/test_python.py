@@ -81,10 +81,9 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         done = run_python(tmp_path / "script.py")
         assert done.returncode == 0 and not (tmp_path / "made").exists(), done.stderr
 
-    @pytest.mark.alone
-    def test_a_callback_costs_less_than_two_per_cent():
+    def test_a_callback_costs_forty_calls():
         done = run_python(SCRIPTS / "overhead.py")
-        assert done.returncode == 0 and float(done.stdout) < 0.02, done.stdout + done.stderr
+        assert done.returncode == 0 and float(done.stdout) < 40, done.stdout + done.stderr
 
     def test_progress_bar_where_one_is_asked_for(tmp_path):
         script = tmp_path / "script.py"
