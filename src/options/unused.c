@@ -63,21 +63,20 @@ static PetscErrorCode OptionTryLate(MPI_Comm comm, const char name[], PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Edit distance of two short words (Levenshtein). */
+/* Edit distance of two short words, two swapped neighbours one edit (Damerau and Levenshtein). */
 static PetscInt NameDistance(const char *a, const char *b) {
-  PetscInt row[128];
+  PetscInt rows[3][128];
   const PetscInt n = (PetscInt)PetscMin(strlen(b), (size_t)127);
-  for (PetscInt j = 0; j <= n; j++) row[j] = j;
+  for (PetscInt j = 0; j <= n; j++) rows[0][j] = j;
   for (PetscInt i = 1; a[i - 1]; i++) {
-    PetscInt corner = row[0];
+    PetscInt *row = rows[i % 3], *above = rows[(i + 2) % 3], *second = rows[(i + 1) % 3];
     row[0] = i;
     for (PetscInt j = 1; j <= n; j++) {
-      const PetscInt change = corner + (a[i - 1] != b[j - 1]);
-      corner = row[j];
-      row[j] = PetscMin(change, 1 + PetscMin(row[j], row[j - 1]));
+      row[j] = PetscMin(above[j - 1] + (a[i - 1] != b[j - 1]), 1 + PetscMin(above[j], row[j - 1]));
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = PetscMin(row[j], 1 + second[j - 2]);
     }
   }
-  return row[n];
+  return rows[strlen(a) % 3][n];
 }
 
 /* TRUE if `name` is the end of a longer name (-rate of -flow_rate) or its beginning (-vesicle_reduced of
