@@ -1,6 +1,6 @@
-/* C = S - L of distant markers in closed form: what smoothing by the regularised delta function and dispersion by the
-   lattice take from the Stokeslet, to the order h^6/r^6 (docs/nearfield.md, Distant pairs). With phi the
-   angle of r, lengths in cells,
+/* C = SL - SL_h of distant markers in closed form: what smoothing by the regularised delta function and dispersion by
+   the lattice take from the Stokeslet, to the order h^6/r^6 (docs/nearfield.md, Distant pairs). With phi the angle of
+   r, lengths in cells,
 
        xx:      SUM_n p_n(1/r^2) cos n phi,        n = 2, 4 .. 14
        yy:      SUM_n -+p_n(1/r^2) cos n phi,      minus where n/2 is odd

@@ -3,11 +3,11 @@
    ratio) U at a membrane that moves with U: a sheet of tensor dipoles J n + n J with the source J.n. The markers'
    velocities obey
 
-       (1 + ratio)/2 U = u_inf + E v' + C_S f + C_D J,      C_D = D - L Q,
+       (1 + ratio)/2 U = u_inf + E v' + C f + C_D J,      C_D = DL - DL_h Pi,
 
-   D the exact double layer of unbounded fluid, L what the same dipoles give on the infinite lattice, Q what takes the
-   net flux off a vesicle's J, as spreading on the grid does (nearblock.h). Its pairs of bodies are those of the near
-   field (nearfield.h). In unbounded fluid L = 0. Every rank gathers all of J.
+   DL the exact double layer of unbounded fluid, DL_h what the same dipoles give on the infinite lattice, Pi what takes
+   the net flux off a vesicle's J, as spreading on the grid does (nearblock.h). Its pairs of bodies are those of the
+   near field (nearfield.h). In unbounded fluid DL_h = 0. Every rank gathers all of J.
 
    Create, perhaps AddBoxPart, Place where the near field has been placed, Set the jump, then Apply, Spread, Rows. */
 #pragma once

@@ -1,14 +1,14 @@
 /* The near field: what the regularised delta function and the lattice take from the markers' velocity is given back
    (docs/nearfield.md),
 
-       U = u_inf + E u + C F,      C = S - L,
+       U = u_inf + E u + C (f ds),      C = SL - SL_h,
 
-   F = f ds the forces, S the exact single layer of unbounded fluid, L = E G E^T/h^2 the mobility of the same
-   regularised delta function on the infinite lattice. The grid's own mobility is L and a smooth part of walls and
+   f ds the forces, SL the exact single layer of unbounded fluid, SL_h = E A^-1 E^T/h^2 the mobility of the same
+   regularised delta function on the infinite lattice. The grid's own mobility is SL_h and a smooth part of walls and
    images, so delta function, angle to the grid, place in the cells and spacing of the markers cancel. C is of pairs of
    markers of one vesicle, and of vesicles near one another, images included, each pair with its images in the grid's
-   walls (layerpairs.h); in unbounded fluid, where there is no grid to take from, C = S of all pairs. With a box part
-   (boxpart.h) D comes on top, which takes the error of second order off the smooth part.
+   walls (layerpairs.h); in unbounded fluid, where there is no grid to take from, C = SL of all pairs. With a box part
+   (boxpart.h) C_box comes on top, which takes the error of second order off the smooth part.
 
    A rank has the blocks (nearblock.h) whose first body is its own. A product gathers all forces where a block joins
    bodies of two ranks, and sums what the box part has of all.
