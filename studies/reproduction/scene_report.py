@@ -92,7 +92,9 @@ def channel(results: Results, folder: Path, quick: bool) -> list[str]:
     text += _settled(results, quick) + _model_rows(models) + _window_rows(windows)
     grids = {n: results.get(scenes.channel(1, cells=n, dt=0.96 / n)) for n in (6, 8, 12, 16)}
     apart = np.ptp([np.interp((24, 48, 96), one["time"], one["height"]) for one in grids.values()], axis=0).max()
-    text += [f"### Grids\n\nWith h = 1/6 to 1/16 and dt = 0.96 h (c_0 = R0, none) these heights differ by {apart:.0e} at most.\n"]
+    text += [
+        f"### Grids\n\nWith h = 1/6 to 1/16 and dt = 0.96 h (c_0 = R0, none) these heights differ by {apart:.0e} at most.\n"
+    ]
     return text + _paper_channel(results, quick)
 
 
@@ -177,7 +179,10 @@ def _paper_channel(results: Results, quick: bool) -> list[str]:
             continue
         last = [*_last(one, "slip", "aspect"), f"{one['area_error']:+.1e}", str(one["steps"])]
         rows.append([*label, *_heights(one), *last])
-    return ["### The paper's method\n\nUnsteady flow, dt = h/(8 u_max); area: relative change. The vesicle beside the middle goes outwards.\n", *table(header, rows)]
+    return [
+        "### The paper's method\n\nUnsteady flow, dt = h/(8 u_max); area: relative change. The vesicle beside the middle goes outwards.\n",
+        *table(header, rows),
+    ]
 
 
 def tank_treading(results: Results, folder: Path, quick: bool) -> list[str]:
