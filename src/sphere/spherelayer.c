@@ -1,0 +1,152 @@
+#include "sphere/spherelayer.h"
+#include "numerics/blas.h"
+
+const int TensorPair[TENSOR_COUNT][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+
+/* G = (a I + b d d) at one of n distances. */
+static inline void SetTensor(PetscInt n, PetscReal a, PetscReal b, const PetscReal d[], PetscReal G[]) {
+  const PetscReal x = d[0], y = d[n], z = d[2 * n];
+  G[TENSOR_XX * n] = a + b * x * x;
+  G[TENSOR_YY * n] = a + b * y * y;
+  G[TENSOR_ZZ * n] = a + b * z * z;
+  G[TENSOR_YZ * n] = b * y * z;
+  G[TENSOR_XZ * n] = b * x * z;
+  G[TENSOR_XY * n] = b * x * y;
+}
+
+static inline PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]) {
+  return a[0] * b[0] + a[n] * b[n] + a[2 * n] * b[2 * n];
+}
+
+static void SetStokeslets(PetscInt n, const PetscReal d[], const PetscReal normal[], const PetscReal weight[],
+                          PetscReal G[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal r2 = Dot(n, d + k, d + k), a = weight[k] / (8 * PETSC_PI * PetscSqrtReal(r2));
+    SetTensor(n, a, a / r2, d + k, G + k);
+  }
+}
+
+static void SetStresslets(PetscInt n, const PetscReal d[], const PetscReal normal[], const PetscReal weight[],
+                          PetscReal G[]) {
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal r2 = Dot(n, d + k, d + k), r5 = r2 * r2 * PetscSqrtReal(r2);
+    SetTensor(n, 0, -3 * weight[k] * Dot(n, d + k, normal + k) / (4 * PETSC_PI * r5), d + k, G + k);
+  }
+}
+
+const Kernel3 Stokeslet3 = {.set = SetStokeslets}, Stresslet3 = {.set = SetStresslets, .normal = PETSC_TRUE};
+
+/* Work of one latitude: `around` turns of the surface, n points of the turned grid. */
+typedef struct {
+  PetscInt around, n;
+  PetscReal *turned; /* [around][3][count] coefficients, of degree 2p for normals */
+  PetscReal *X;      /* [around][3][n] points */
+  PetscReal *normal; /* [around][3][n]; NULL: not needed */
+  PetscReal *G;      /* [around][TENSOR_COUNT][n] */
+  PetscReal *rows;   /* [count][around TENSOR_COUNT] */
+} LatitudeWork;
+
+/* y[around][3][n]: fields with coefficients c[3] of the turned table's degree, at the points of all turns. */
+static PetscErrorCode TurnedValues(const TurnedGrids *t, PetscInt latitude, const PetscReal c[], LatitudeWork *w,
+                                   PetscReal y[]) {
+  const PetscInt count = HarmonicsCount(t->p);
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < w->around; j++)
+    for (int d = 0; d < 3; d++)
+      HarmonicsTurn(t->p, 2 * PETSC_PI * j / w->around, PETSC_FALSE, c + d * count, w->turned + (3 * j + d) * count);
+  PetscCall(DenseProduct(PETSC_FALSE, t->n, 3 * w->around, count, t->Y + latitude * count * t->n, w->turned, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The inner integrals for the points of one latitude: out[TENSOR_COUNT][count][targets]; at[3][targets]: the points. */
+static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt latitude, const PetscReal at[],
+                                    LatitudeWork *w, PetscReal out[]) {
+  const PetscInt n = w->n, count = s->count, targets = s->shape.grid.n, rows = TENSOR_COUNT * w->around;
+  PetscReal *row = w->turned, *back = w->turned + count;
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < w->around; j++) {
+    PetscReal *d = w->X + 3 * j * n;
+    for (PetscInt k = 0; k < 3 * n; k++) d[k] = at[(k / n) * targets + latitude * w->around + j] - d[k];
+    kernel->set(n, d, w->normal ? w->normal + 3 * j * n : NULL, s->turned.weight, w->G + TENSOR_COUNT * j * n);
+  }
+  PetscCall(DenseProduct(PETSC_TRUE, rows, count, n, w->G, s->turned.Y + latitude * count * n, w->rows));
+  for (PetscInt r = 0; r < rows; r++) {
+    const PetscInt j = r / TENSOR_COUNT, target = latitude * w->around + j;
+    for (PetscInt l = 0; l < count; l++) row[l] = w->rows[l * rows + r];
+    HarmonicsTurn(s->p, 2 * PETSC_PI * j / w->around, PETSC_TRUE, row, back);
+    for (PetscInt l = 0; l < count; l++) out[((r % TENSOR_COUNT) * count + l) * targets + target] = back[l];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coefficients of degree 2p of n dA/domega, a polynomial of that degree. */
+static PetscErrorCode NormalCoefficients(Sphere s, const PetscReal c[], PetscReal m[]) {
+  const PetscInt n = s->fine.grid.n;
+  SphereTable table;
+  PetscReal *T, *P, *a;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(3 * n, &T, 3 * n, &P, 3 * n, &a));
+  PetscCall(SphereTableValues(&s->fine, HARMONIC_T, s->count, 3, c, T));
+  PetscCall(SphereTableValues(&s->fine, HARMONIC_P, s->count, 3, c, P));
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(s->fine.grid.theta[i]);
+    }
+  PetscCall(SphereTableCreate(2 * s->p, 2 * s->p, 1, &table));
+  PetscCall(SphereTableProject(&table, HarmonicsCount(2 * s->p), 3, a, m));
+  PetscCall(SphereTableDestroy(&table));
+  PetscCall(PetscFree3(T, P, a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All inner integrals, out[TENSOR_COUNT][count][targets]. */
+static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const PetscReal c[], PetscReal out[]) {
+  const PetscInt around = 2 * s->p + 2, n = s->turned.n, many = HarmonicsCount(kernel->normal ? 2 * s->p : s->p);
+  LatitudeWork w = {.around = around, .n = n};
+  PetscReal *at, *m;
+  PetscFunctionBeginUser;
+  if (kernel->normal) PetscCall(SphereNormalTables(s));
+  PetscCall(PetscMalloc4(3 * s->shape.grid.n, &at, 3 * many, &m, 3 * around * many, &w.turned, 3 * around * n, &w.X));
+  PetscCall(PetscMalloc2(TENSOR_COUNT * around * n, &w.G, TENSOR_COUNT * around * s->count, &w.rows));
+  if (kernel->normal) PetscCall(PetscMalloc1(3 * around * n, &w.normal));
+  if (kernel->normal) PetscCall(NormalCoefficients(s, c, m));
+  PetscCall(SphereTableValues(&s->shape, HARMONIC, s->count, 3, c, at));
+  for (PetscInt i = 0; i < s->turned.latitudes; i++) {
+    PetscCall(TurnedValues(&s->turned, i, c, &w, w.X));
+    if (kernel->normal) PetscCall(TurnedValues(&s->normal, i, m, &w, w.normal));
+    PetscCall(LayerLatitude(s, kernel, i, at, &w, out));
+  }
+  PetscCall(PetscFree(w.normal));
+  PetscCall(PetscFree2(w.G, w.rows));
+  PetscCall(PetscFree4(at, m, w.turned, w.X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphereLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], PetscReal M[]) {
+  const PetscInt count = s->count, targets = s->shape.grid.n, size = 3 * count;
+  PetscReal *out, *block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(TENSOR_COUNT * count * targets, &out, TENSOR_COUNT * count * count, &block));
+  PetscCall(LayerAtTargets(s, kernel, c, out));
+  PetscCall(SphereTableProject(&s->shape, count, TENSOR_COUNT * count, out, block));
+  for (int q = 0; q < TENSOR_COUNT; q++)
+    for (PetscInt l = 0; l < count; l++) {
+      const PetscInt a = TensorPair[q][0], b = TensorPair[q][1];
+      const PetscReal *column = block + (q * count + l) * count;
+      PetscCall(PetscArraycpy(M + (b * count + l) * size + a * count, column, count));
+      PetscCall(PetscArraycpy(M + (a * count + l) * size + b * count, column, count));
+    }
+  PetscCall(PetscFree2(out, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphereSingleLayer(Sphere s, PetscReal nu, const PetscReal c[], PetscReal M[]) {
+  const PetscInt size = 3 * s->count;
+  PetscFunctionBeginUser;
+  PetscCall(SphereLayerMatrix(s, &Stokeslet3, c, M));
+  for (PetscInt l = 0; l < size; l++)
+    for (PetscInt k = 0; k <= l; k++)
+      M[l * size + k] = M[k * size + l] = (M[l * size + k] + M[k * size + l]) / (2 * nu);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

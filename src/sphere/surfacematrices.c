@@ -1,0 +1,109 @@
+#include "sphere/surface.h"
+#include "numerics/blas.h"
+#include "sphere/spherelayer.h"
+
+/* C[columns_B][columns_A] = SUM over points of factor A B, A[columns_A][n], B[columns_B][n]. */
+static PetscErrorCode WeightedProduct(PetscInt n, const PetscReal factor[], DenseView A, DenseView B, PetscReal C[]) {
+  PetscReal *scaled;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * A.columns, &scaled));
+  for (PetscInt k = 0; k < A.columns; k++)
+    for (PetscInt i = 0; i < n; i++) scaled[k * n + i] = factor[i] * A.a[k * n + i];
+  PetscCall(DenseProduct(PETSC_TRUE, A.columns, B.columns, n, scaled, B.a, C));
+  PetscCall(PetscFree(scaled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static DenseView Columns(PetscInt n, PetscInt columns, const PetscReal a[]) {
+  return (DenseView){.a = a, .rows = n, .columns = columns, .apart = n};
+}
+
+PetscErrorCode SurfaceGradient(Surface s, PetscReal g[]) {
+  PetscFunctionBeginUser;
+  PetscCall(WeightedProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, 1, s->h),
+                            Columns(s->n, 3 * s->sphere->count, s->dh), g));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceBending(Surface s, PetscReal K[]) {
+  const DenseView dh = Columns(s->n, 3 * s->sphere->count, s->dh);
+  PetscFunctionBeginUser;
+  PetscCall(WeightedProduct(s->n, s->sphere->fine.grid.weight, dh, dh, K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceAreaRows(Surface s, PetscReal A[]) {
+  const PetscInt count = s->sphere->count;
+  PetscFunctionBeginUser;
+  PetscCall(WeightedProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, count, s->sphere->fine.part[HARMONIC]),
+                            Columns(s->n, 3 * count, s->dJ), A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceNormals(Surface s, PetscReal N[]) {
+  const PetscInt n = s->n, count = s->sphere->count;
+  const DenseView Y = Columns(n, count, s->sphere->fine.part[HARMONIC]);
+  PetscReal *factor, *block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &factor, count * count, &block));
+  for (int q = 0; q < TENSOR_COUNT; q++) {
+    const PetscInt a = TensorPair[q][0], b = TensorPair[q][1];
+    for (PetscInt i = 0; i < n; i++)
+      factor[i] = s->sphere->fine.grid.weight[i] * s->normal[a * n + i] * s->normal[b * n + i];
+    PetscCall(WeightedProduct(n, factor, Y, Y, block));
+    for (PetscInt l = 0; l < count; l++) {
+      PetscCall(PetscArraycpy(N + (b * count + l) * 3 * count + a * count, block + l * count, count));
+      PetscCall(PetscArraycpy(N + (a * count + l) * 3 * count + b * count, block + l * count, count));
+    }
+  }
+  PetscCall(PetscFree2(factor, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* L[count][count] = INT max(sigma, 0) grad_s Y_k . grad_s Y_l dA. */
+static PetscErrorCode TensionGradients(Surface s, const PetscReal sigma[], PetscReal L[]) {
+  const PetscInt n = s->n, count = s->sphere->count;
+  const PetscReal *T = s->D[HARMONIC_T], *P = s->D[HARMONIC_P];
+  PetscReal *at, *factor, *block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &at, 3 * n, &factor, count * count, &block));
+  PetscCall(SphereTableValues(&s->sphere->fine, HARMONIC, count, 1, sigma, at));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal E = 0, F = 0, G = 0;
+    for (int d = 0; d < 3; d++) {
+      E += T[d * n + i] * T[d * n + i];
+      F += T[d * n + i] * P[d * n + i];
+      G += P[d * n + i] * P[d * n + i];
+    }
+    const PetscReal a = s->sphere->fine.grid.weight[i] * s->J[i] * PetscMax(at[i], 0) / (E * G - F * F);
+    factor[i] = a * G;
+    factor[n + i] = -a * F;
+    factor[2 * n + i] = a * E;
+  }
+  PetscCall(PetscArrayzero(L, count * count));
+  for (int q = 0; q < 4; q++) {
+    const DenseView A = Columns(n, count, s->sphere->fine.part[q / 2 ? HARMONIC_P : HARMONIC_T]),
+                    B = Columns(n, count, s->sphere->fine.part[q % 2 ? HARMONIC_P : HARMONIC_T]);
+    PetscCall(WeightedProduct(n, factor + (q / 2 + q % 2) * n, A, B, block));
+    for (PetscInt k = 0; k < count * count; k++) L[k] += block[k];
+  }
+  PetscCall(PetscFree3(at, factor, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfacePull(Surface s, const PetscReal sigma[], PetscReal K[]) {
+  const PetscInt n = s->n, count = s->sphere->count;
+  const DenseView Y = Columns(n, count, s->sphere->fine.part[HARMONIC]);
+  PetscReal *L, *normal, *factor, *LP;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(count * count, &L, 3 * count * count, &normal, n, &factor, 3 * count * count, &LP));
+  PetscCall(TensionGradients(s, sigma, L));
+  for (int d = 0; d < 3; d++) {
+    for (PetscInt i = 0; i < n; i++) factor[i] = s->sphere->fine.grid.weight[i] * s->normal[d * n + i];
+    PetscCall(WeightedProduct(n, factor, Y, Y, normal + d * count * count)); /* of n_d Y */
+  }
+  PetscCall(DenseProduct(PETSC_FALSE, count, 3 * count, count, L, normal, LP));
+  PetscCall(DenseProduct(PETSC_TRUE, 3 * count, 3 * count, count, normal, LP, K));
+  PetscCall(PetscFree4(L, normal, factor, LP));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
