@@ -1,0 +1,163 @@
+#include "numerics/blas.h"
+#include "space/space.h"
+
+#define RENEWAL 0.4     /* iterations that new factors cost, over the number of harmonics */
+#define STEP_RATIO 1.45 /* of two steps with the same factors */
+
+PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->own; v++)
+    PetscCall(DenseProduct(PETSC_FALSE, s->size, 1, s->size, s->vesicle[v]->M, F + v * s->size, V + v * s->size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = what the rows make of x by U = -M C x. */
+static PetscErrorCode MultSpace(Mat A, Vec X, Vec Y) {
+  Space s;
+  const PetscScalar *x;
+  PetscScalar *y;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &s));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(Y, &y));
+  for (PetscInt v = 0; v < s->own; v++)
+    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->F + v * s->size));
+  PetscCall(SpaceMobility(s, s->F, s->V));
+  for (PetscInt k = 0; k < s->own * s->size; k++) s->V[k] = -s->V[k];
+  for (PetscInt v = 0; v < s->own; v++)
+    PetscCall(Vesicle3Rows(s->vesicle[v], x + 4 * v * s->count, s->V + v * s->size, y + 4 * v * s->count));
+  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyFactors(PC pc, Vec r, Vec z) {
+  const PetscInt each = 16;
+  Space s;
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &s));
+  PetscCall(VecCopy(r, z));
+  PetscCall(VecGetArray(z, &x));
+  for (PetscInt v = 0; v < s->own; v++)
+    PetscCall(DenseSolve(4 * s->count, s->factor + v * each * s->count * s->count, s->pivot + 4 * v * s->count,
+                         PETSC_FALSE, 1, x + 4 * v * s->count));
+  PetscCall(VecRestoreArray(z, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceSolverCreate(Space s) {
+  const PetscInt n = 4 * s->count;
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(s->comm, s->own * n, s->own * n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))MultSpace));
+  PetscCall(MatCreateVecs(s->A, &s->x, &s->b));
+  PetscCall(PetscMalloc2(s->own * n * n, &s->factor, s->own * n, &s->pivot));
+  PetscCall(KSPCreate(s->comm, &s->ksp));
+  PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
+  PetscCall(KSPSetType(s->ksp, KSPFGMRES));
+  PetscCall(KSPSetTolerances(s->ksp, s->setting.rtol, 0, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
+  PetscCall(KSPGetPC(s->ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetApply(pc, ApplyFactors));
+  PetscCall(PCShellSetContext(pc, s));
+  PetscCall(PCShellSetName(pc, "dense problem of each vesicle"));
+  PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
+  PetscCall(KSPSetFromOptions(s->ksp));
+  s->age = AgeNone();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceSolverDestroy(Space s) {
+  PetscFunctionBeginUser;
+  PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(MatDestroy(&s->A));
+  PetscCall(VecDestroy(&s->x));
+  PetscCall(VecDestroy(&s->b));
+  PetscCall(PetscFree2(s->factor, s->pivot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New factors where the old ones have cost as much; report.failure when one is singular. */
+static PetscErrorCode RenewFactors(Space s, PetscReal a0) {
+  const PetscInt n = 4 * s->count;
+  int good = 1;
+  PetscFunctionBeginUser;
+  if (!AgeIsOver(&s->age, a0, STEP_RATIO, RENEWAL * (PetscReal)s->count)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < s->own; v++) {
+    PetscBool factored;
+    PetscCall(Vesicle3Matrix(s->vesicle[v], s->factor + v * n * n));
+    PetscCall(DenseFactor(n, s->factor + v * n * n, s->pivot + v * n, &factored));
+    if (!factored) good = 0;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->comm));
+  if (!good) PetscCall(PetscStrncpy(s->report.failure, "the problem of a vesicle is singular", PETVES_MAX_MESSAGE));
+  AgeRenew(&s->age, a0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* b = targets - rows of u_inf - M known. V becomes this velocity. */
+static PetscErrorCode RightHandSide(Space s) {
+  const PetscInt n = 4 * s->count;
+  PetscScalar *b;
+  PetscReal *y;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->own; v++)
+    PetscCall(PetscArraycpy(s->F + v * s->size, s->vesicle[v]->known, s->size));
+  PetscCall(SpaceMobility(s, s->F, s->V));
+  for (PetscInt k = 0; k < s->own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
+  PetscCall(PetscMalloc1(n, &y));
+  PetscCall(VecGetArrayWrite(s->b, &b));
+  for (PetscInt v = 0; v < s->own; v++) {
+    const PetscInt at = v * s->size;
+    const PetscReal *U = s->state.dt_last > 0 ? s->state.U + at : NULL;
+    PetscCall(Vesicle3Target(s->vesicle[v], s->Xhat + at, s->Xstar + at, U, b + v * n));
+    PetscCall(Vesicle3Rows(s->vesicle[v], NULL, s->V + at, y));
+    for (PetscInt k = 0; k < n; k++) b[v * n + k] -= y[k];
+  }
+  PetscCall(VecRestoreArrayWrite(s->b, &b));
+  PetscCall(PetscFree(y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* V = u_inf - M (known + C x). */
+static PetscErrorCode Velocities(Space s) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(s->x, &x));
+  for (PetscInt v = 0; v < s->own; v++) {
+    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->F + v * s->size));
+    for (PetscInt k = 0; k < s->size; k++) s->F[v * s->size + k] += s->vesicle[v]->known[k];
+  }
+  PetscCall(VecRestoreArrayRead(s->x, &x));
+  PetscCall(SpaceMobility(s, s->F, s->V));
+  for (PetscInt k = 0; k < s->own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceSolve(Space s) {
+  KSPConvergedReason why;
+  PetscInt its;
+  PetscReal residual, a0 = 0;
+  PetscFunctionBeginUser;
+  if (s->own) a0 = s->vesicle[0]->a0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &a0, 1, MPIU_REAL, MPI_MAX, s->comm));
+  PetscCall(RenewFactors(s, a0));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RightHandSide(s));
+  PetscCall(KSPSolve(s->ksp, s->b, s->x));
+  PetscCall(KSPGetConvergedReason(s->ksp, &why));
+  PetscCall(KSPGetIterationNumber(s->ksp, &its));
+  PetscCall(KSPGetResidualNorm(s->ksp, &residual));
+  AgeSolved(&s->age, its);
+  s->report.its += its;
+  if (why < 0)
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
+                            "the solve with prefix coupled_ failed: %s after %" PetscInt_FMT " iterations, residual %g",
+                            KSPConvergedReasons[why], its, (double)residual));
+  else
+    PetscCall(Velocities(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

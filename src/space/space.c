@@ -1,0 +1,196 @@
+#include "space/space.h"
+
+#define PARTS 7 /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
+
+static PetscErrorCode StateAllocate(Space s, SpaceState *q) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(s->own * s->size, &q->X, s->own * s->size, &q->U, s->own * s->count, &q->sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StateFree(SpaceState *q) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(q->X, q->U, q->sigma));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt vesicles,
+                           const Vesicle3Setting material[], const PetscReal X[], Space *out) {
+  Space s;
+  PetscMPIInt rank, ranks;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *out = s;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  s->comm = comm;
+  s->setting = *setting;
+  s->vesicles = vesicles;
+  s->first = vesicles * rank / ranks;
+  s->own = vesicles * (rank + 1) / ranks - s->first;
+  PetscCall(SphereCreate(setting->p, &s->sphere));
+  s->count = s->sphere->count;
+  s->size = 3 * s->count;
+  PetscCall(PetscCalloc1(s->own, &s->vesicle));
+  for (PetscInt v = 0; v < s->own; v++)
+    PetscCall(Vesicle3Create(s->sphere, &material[s->first + v], &s->vesicle[v]));
+  PetscCall(StateAllocate(s, &s->state));
+  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateAllocate(s, &s->old[j]));
+  const PetscInt n = s->own * s->size;
+  PetscCall(PetscMalloc6(n, &s->Xstar, n, &s->Xhat, n, &s->Y, n, &s->background, n, &s->F, n, &s->V));
+  PetscCall(PetscArraycpy(s->state.X, X + s->first * s->size, n));
+  s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(setting->order, 2), .guess = 2};
+  PetscCall(SpaceSolverCreate(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceDestroy(Space *space) {
+  Space s = *space;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpaceSolverDestroy(s));
+  for (PetscInt v = 0; v < s->own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
+  PetscCall(PetscFree(s->vesicle));
+  PetscCall(StateFree(&s->state));
+  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateFree(&s->old[j]));
+  PetscCall(PetscFree6(s->Xstar, s->Xhat, s->Y, s->background, s->F, s->V));
+  PetscCall(SphereDestroy(&s->sphere));
+  PetscCall(PetscFree(*space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The formula of the next step, with as many states as are known. */
+static BDF NextFormula(Space s, PetscReal dt) {
+  PetscReal step[BDF_STATES] = {dt, s->state.dt_last};
+  for (int j = 1; j < s->past; j++) step[j + 1] = s->old[j - 1].dt_last;
+  return BDFCoefficients(PetscMin(s->setting.order, s->past + 1), step);
+}
+
+/* X*, Xhat; surfaces and u_inf at X* at time t. */
+static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
+  const PetscReal *X[BDF_MOST] = {s->state.X};
+  int good = 1;
+  PetscFunctionBeginUser;
+  for (int j = 1; j < BDF_MOST; j++) X[j] = s->old[j - 1].X;
+  for (PetscInt k = 0; k < s->own * s->size; k++) {
+    s->Xstar[k] = s->Xhat[k] = 0;
+    for (PetscInt j = 0; j < b->order; j++) {
+      s->Xstar[k] += b->star[j] * X[j][k];
+      s->Xhat[k] += b->history[j] / b->a0 * X[j][k];
+    }
+  }
+  for (PetscInt v = 0; v < s->own; v++) {
+    const Vesicle3 vesicle = s->vesicle[v];
+    PetscReal *u;
+    PetscBool done;
+    PetscCall(Vesicle3Place(vesicle, s->Xstar + v * s->size, s->state.dt_last > 0 ? s->state.sigma + v * s->count : NULL, &done));
+    if (!done) good = 0;
+    PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
+    s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u);
+    PetscCall(SphereTableProject(&s->sphere->fine, s->count, 3, u, s->background + v * s->size));
+    PetscCall(Vesicle3Velocity(vesicle, s->background + v * s->size));
+    PetscCall(PetscFree(u));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->comm));
+  if (!good) PetscCall(PetscStrncpy(s->report.failure, "the double layer of a vesicle is singular", PETVES_MAX_MESSAGE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* First guess of (Q, sigma): Q that leads to X*, the last tension. */
+static PetscErrorCode Guess(Space s, PetscReal a0) {
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayWrite(s->x, &x));
+  for (PetscInt v = 0; v < s->own; v++) {
+    PetscScalar *Q = x + 4 * v * s->count;
+    for (PetscInt k = 0; k < s->size; k++) Q[k] = a0 * (s->Xstar[v * s->size + k] - s->Xhat[v * s->size + k]);
+    PetscCall(PetscArraycpy(Q + s->size, s->state.sigma + v * s->count, s->count));
+  }
+  PetscCall(VecRestoreArrayWrite(s->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Y = Xhat + Q/a0; the largest root mean square of its change, over the radius. */
+static PetscErrorCode Iterate(Space s, PetscReal a0, PetscReal *moved) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  *moved = 0;
+  PetscCall(VecGetArrayRead(s->x, &x));
+  for (PetscInt v = 0; v < s->own; v++) {
+    const PetscReal R = PetscCbrtReal(0.75 / PETSC_PI * s->vesicle[v]->setting.volume);
+    PetscReal sum = 0;
+    for (PetscInt k = 0; k < s->size; k++) {
+      const PetscInt at = v * s->size + k;
+      const PetscReal new = s->Xhat[at] + x[4 * v * s->count + k] / a0;
+      sum += PetscSqr(new - s->Y[at]);
+      s->Y[at] = new;
+    }
+    *moved = PetscMax(*moved, PetscSqrtReal(sum / (4 * PETSC_PI)) / R);
+  }
+  PetscCall(VecRestoreArrayRead(s->x, &x));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moved, 1, MPIU_REAL, MPI_MAX, s->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step of size dt as far as Y, V and x; the state is as it was. */
+static PetscErrorCode Attempt(Space s, PetscReal dt) {
+  const BDF b = NextFormula(s, dt);
+  PetscReal moved;
+  PetscFunctionBeginUser;
+  PetscCall(Place(s, &b, s->state.t + dt));
+  if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Guess(s, b.a0));
+  PetscCall(PetscArraycpy(s->Y, s->Xstar, s->own * s->size));
+  for (PetscInt pass = 0; pass < s->setting.newton && !*s->report.failure; pass++) {
+    for (PetscInt v = 0; v < s->own; v++) {
+      const PetscInt at = v * s->size;
+      PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->Xhat + at, s->Xstar + at, s->Y + at));
+    }
+    PetscCall(SpaceSolve(s));
+    if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(Iterate(s, b.a0, &moved));
+    s->report.estimate = pass ? s->report.estimate : moved;
+  }
+  if (PetscIsInfOrNanReal(moved)) PetscCall(PetscStrncpy(s->report.failure, "the shape is not finite", PETVES_MAX_MESSAGE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The attempt becomes the state. */
+static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
+  const SpaceState last = s->old[BDF_MOST - 2];
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  for (int j = BDF_MOST - 2; j > 0; j--) s->old[j] = s->old[j - 1];
+  s->old[0] = s->state;
+  s->state = last; /* its arrays */
+  s->state.t = t;
+  s->state.dt_last = dt;
+  s->state.step = s->old[0].step;
+  s->past = PetscMin(s->past + 1, BDF_MOST - 1);
+  PetscCall(PetscArraycpy(s->state.U, s->V, s->own * s->size));
+  PetscCall(PetscArraycpy(s->state.X, s->Y, s->own * s->size));
+  PetscCall(VecGetArrayRead(s->x, &x));
+  for (PetscInt v = 0; v < s->own; v++) {
+    PetscCall(PetscArraycpy(s->state.sigma + v * s->count, x + 4 * v * s->count + s->size, s->count));
+    PetscCall(Vesicle3KeepVolume(s->vesicle[v], s->state.X + v * s->size));
+  }
+  PetscCall(VecRestoreArrayRead(s->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceStep(Space s, PetscReal until) {
+  const PetscReal t = s->state.t, dt = StepFixed(&s->setting.policy, t, until);
+  const PetscInt parts = s->state.step ? 1 : PARTS;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
+  PetscReal done = 0;
+  for (PetscInt part = 0; part < parts; part++) {
+    const PetscReal share = parts == 1 ? dt : dt / (PetscReal)(1 << (part ? parts - part : parts - 1));
+    PetscCall(Attempt(s, share));
+    if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+    done += share;
+    PetscCall(Accept(s, share, part == parts - 1 ? StepTime(&s->setting.policy, t, dt, until) : t + done));
+  }
+  s->state.step++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,81 @@
+/* Vesicles in unbounded fluid of three dimensions: their states in time and one step (docs/space.md). A shape is its
+   coefficients X[3][count] of spherical harmonics; ranks own contiguous ranges of vesicles.
+
+   A step of the orders 1 to 3 (scheme/bdf.h) solves the problem of vesicle3.h for all vesicles by GMRES with the prefix
+   coupled_, preconditioned by the factors of each vesicle's own problem, which are kept as long as their iterations are
+   cheaper than new factors. */
+#pragma once
+#include "precondition/age.h"
+#include "scheme/bdf.h"
+#include "scheme/stepcontrol.h"
+#include "space/vesicle3.h"
+
+/* A background flow: u[3][n] at the points X[3][n] at time t. */
+typedef void (*Flow3)(const void *context, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]);
+
+/* The caller fills it in before SpaceCreate. */
+typedef struct {
+  PetscInt p;      /* degree of the harmonics */
+  PetscInt order;  /* in time */
+  PetscInt newton; /* Newton steps on the bending energy within a step, 1 or 2 */
+  PetscReal rtol;  /* default of -coupled_ksp_rtol */
+  Flow3 flow;
+  const void *context;
+  StepPolicy policy;
+} SpaceSetting;
+
+/* What the last step did. */
+typedef struct {
+  PetscInt its;       /* of GMRES */
+  PetscReal estimate; /* largest root mean square of X - X* of a vesicle, over its radius */
+  PetscReal stretch;  /* largest |A U| but for the area target (length^2/time): what the solver left */
+  char failure[PETVES_MAX_MESSAGE]; /* why the step was not taken; empty: it was taken */
+} SpaceReport;
+
+/* States are arrays of the own vesicles. */
+typedef struct {
+  PetscInt step;
+  PetscReal t, dt_last;         /* dt_last: the step that led to it; 0 at the start */
+  PetscReal *X, *U;             /* [own][3 count] */
+  PetscReal *sigma;             /* [own][count] */
+} SpaceState;
+
+typedef struct _p_Space *Space;
+struct _p_Space {
+  MPI_Comm comm;
+  SpaceSetting setting;
+  Sphere sphere;
+  PetscInt vesicles, first, own; /* number of all, first own one, number of own ones */
+  PetscInt count, size;          /* harmonics, 3 count */
+  Vesicle3 *vesicle;             /* [own] */
+  SpaceState state, old[BDF_MOST - 1];
+  PetscInt past; /* states before the present one that are known */
+  StepPlan plan;
+  SpaceReport report;
+  PetscReal *Xstar, *Xhat, *Y, *background, *F, *V; /* [own][3 count]; background: u_inf at X* */
+  Mat A;
+  KSP ksp;
+  Vec x, b;                /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
+  PetscReal *factor;       /* [own][4 count][4 count] */
+  PetscBLASInt *pivot;     /* [own][4 count] */
+  Age age;                 /* of the factors */
+};
+
+/* SpaceCreate - vesicles of the shapes X[vesicles][3 count] with their materials [vesicles] at time 0. Collective.
+   Errors: memory. */
+PETSC_EXTERN PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt vesicles,
+                                        const Vesicle3Setting material[], const PetscReal X[], Space *space);
+PETSC_EXTERN PetscErrorCode SpaceDestroy(Space *space);
+
+/* SpaceStep - one time step, to the time `until` at most; the first one in parts that grow from 1/64 of it. When
+   report.failure is not empty the step was not taken, and the state is the one before. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceStep(Space space, PetscReal until);
+
+/* SpaceMobility - V[own][3 count] = M F of the single layers of all vesicles where they have been placed. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
+
+/* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as the
+   first guess, and set V to the vesicles' velocities; report.failure says so when it fails. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceSolverCreate(Space space);
+PETSC_EXTERN PetscErrorCode SpaceSolverDestroy(Space space);
+PETSC_EXTERN PetscErrorCode SpaceSolve(Space space);

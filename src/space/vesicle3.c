@@ -1,0 +1,248 @@
+#include "space/vesicle3.h"
+#include "numerics/blas.h"
+#include "sphere/spherelayer.h"
+
+#define LEAST_TENSION 1e-12 /* of the mean of its block, added to it: a sphere's uniform tension moves nothing */
+#define LEAST_MOTION 0.01   /* of the largest: rigid motions that change the shape less, squared, are not fitted */
+
+PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, Vesicle3 *out) {
+  const PetscInt count = sphere->count, size = 3 * count;
+  Vesicle3 v;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&v));
+  *out = v;
+  v->setting = *setting;
+  v->count = count;
+  v->size = size;
+  PetscCall(SurfaceCreate(sphere, &v->at));
+  PetscCall(SurfaceCreate(sphere, &v->about));
+  PetscCall(PetscMalloc3(size * size, &v->M, 4 * count * size, &v->rows, 4 * count * size, &v->columns));
+  PetscCall(PetscCalloc3(size * size, &v->pull, size, &v->clean, size, &v->known));
+  if (setting->ratio != 1) PetscCall(PetscMalloc2(size * size, &v->inverse, size, &v->pivot));
+  for (PetscInt k = 0; k < size; k++)
+    v->clean[k] = setting->label_rate * PetscPowRealInt((PetscReal)HarmonicsDegree(k % count) / sphere->p, 4);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle) {
+  Vesicle3 v = *vesicle;
+  PetscFunctionBeginUser;
+  if (!v) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SurfaceDestroy(&v->at));
+  PetscCall(SurfaceDestroy(&v->about));
+  PetscCall(PetscFree3(v->M, v->rows, v->columns));
+  PetscCall(PetscFree3(v->pull, v->clean, v->known));
+  PetscCall(PetscFree2(v->inverse, v->pivot));
+  PetscCall(PetscFree(*vesicle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* M = [(1 + ratio)/2 + (1 - ratio) D]^-1 S, S the single layer. */
+static PetscErrorCode PlaceMobility(Vesicle3 v, const PetscReal Xstar[], PetscBool *done) {
+  const PetscReal ratio = v->setting.ratio;
+  PetscFunctionBeginUser;
+  *done = PETSC_TRUE;
+  PetscCall(SphereSingleLayer(v->at->sphere, v->setting.nu, Xstar, v->M));
+  if (ratio == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SphereLayerMatrix(v->at->sphere, &Stresslet3, Xstar, v->inverse));
+  for (PetscInt k = 0; k < v->size * v->size; k++)
+    v->inverse[k] = (1 - ratio) * v->inverse[k] + (k % (v->size + 1) ? 0 : (1 + ratio) / 2);
+  PetscCall(DenseFactor(v->size, v->inverse, v->pivot, done));
+  if (*done) PetscCall(DenseSolve(v->size, v->inverse, v->pivot, PETSC_FALSE, v->size, v->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscReal sigma[], PetscBool *done) {
+  const PetscInt count = v->count, size = v->size;
+  PetscReal *N, *A;
+  PetscFunctionBeginUser;
+  PetscCall(SurfacePlace(v->at, Xstar, PETSC_TRUE));
+  PetscCall(PlaceMobility(v, Xstar, done));
+  PetscCall(PetscMalloc2(size * size, &N, size * count, &A));
+  PetscCall(SurfaceNormals(v->at, N));
+  PetscCall(SurfaceAreaRows(v->at, A));
+  for (PetscInt l = 0; l < size; l++) {
+    for (PetscInt k = 0; k < size; k++) v->rows[4 * count * l + k] = -N[size * l + k];
+    for (PetscInt k = 0; k < count; k++) {
+      v->rows[4 * count * l + size + k] = -A[count * l + k];
+      v->columns[size * (size + k) + l] = A[count * l + k];
+    }
+  }
+  PetscCall(PetscFree2(N, A));
+  if (sigma)
+    PetscCall(SurfacePull(v->at, sigma, v->pull));
+  else
+    PetscCall(PetscArrayzero(v->pull, size * size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Linearise(Vesicle3 v, PetscReal a0, const PetscReal Xhat[], const PetscReal Xstar[],
+                                 const PetscReal Y[]) {
+  const PetscInt size = v->size;
+  const PetscReal kappa = v->setting.bending;
+  PetscReal *change;
+  PetscFunctionBeginUser;
+  v->a0 = a0;
+  PetscCall(SurfacePlace(v->about, Y, PETSC_TRUE));
+  PetscCall(SurfaceBending(v->about, v->columns));
+  PetscCall(SurfaceGradient(v->about, v->known));
+  PetscCall(PetscMalloc1(size, &change));
+  for (PetscInt k = 0; k < size; k++) {
+    change[k] = kappa * (Xhat[k] - Y[k]);
+    v->known[k] *= kappa;
+  }
+  PetscCall(DenseMultAdd(PETSC_FALSE, size, size, 1, v->columns, change, v->known));
+  for (PetscInt k = 0; k < size; k++) change[k] = Xhat[k] - Xstar[k];
+  PetscCall(DenseMultAdd(PETSC_FALSE, size, size, 1, v->pull, change, v->known));
+  PetscCall(PetscFree(change));
+  for (PetscInt k = 0; k < size * size; k++) v->columns[k] = (kappa * v->columns[k] + v->pull[k]) / a0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Force(Vesicle3 v, const PetscReal x[], PetscReal F[]) {
+  PetscFunctionBeginUser;
+  PetscCall(DenseProduct(PETSC_FALSE, v->size, 1, 4 * v->count, v->columns, x, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscReal U[]) {
+  PetscFunctionBeginUser;
+  if (v->inverse) PetscCall(DenseSolve(v->size, v->inverse, v->pivot, PETSC_FALSE, 1, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y[size] += scale (1 - P_n) w. */
+static PetscErrorCode AddTangential(Vesicle3 v, PetscReal scale, const PetscReal w[], PetscReal y[]) {
+  const DenseView minus_normals = {.a = v->rows, .rows = v->size, .columns = v->size, .apart = 4 * v->count};
+  PetscReal *scaled;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(v->size, &scaled));
+  for (PetscInt k = 0; k < v->size; k++) {
+    scaled[k] = scale * w[k];
+    y[k] += scaled[k];
+  }
+  PetscCall(DenseProductWithin(PETSC_FALSE, minus_normals, (DenseView){scaled, v->size, 1, v->size}, 1, y, v->size));
+  PetscCall(PetscFree(scaled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = Lambda gamma x of labels. */
+static void CleanLabels(Vesicle3 v, const PetscReal x[], PetscReal y[]) {
+  for (PetscInt k = 0; k < v->size; k++) y[k] = v->clean[k] * x[k];
+}
+
+PetscErrorCode Vesicle3Rows(Vesicle3 v, const PetscReal x[], const PetscReal U[], PetscReal y[]) {
+  PetscReal *cleaned;
+  PetscFunctionBeginUser;
+  PetscCall(DenseProduct(PETSC_FALSE, 4 * v->count, 1, v->size, v->rows, U, y));
+  if (!x) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(v->size, &cleaned));
+  CleanLabels(v, x, cleaned);
+  for (PetscInt k = 0; k < v->size; k++) y[k] += x[k];
+  PetscCall(AddTangential(v, 1 / v->a0, cleaned, y));
+  PetscCall(PetscFree(cleaned));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rigid motion q, translation and rotation about the middle X0 of the surface, whose normal part is nearest to that of
+   U in the mean square. Motions that hardly move the shape, as turns of a surface of revolution, are left out. */
+static PetscErrorCode FitRigid(Vesicle3 v, const PetscReal U[], PetscReal X0[3], PetscReal q[6]) {
+  const Surface s = v->at;
+  const PetscInt n = s->n;
+  PetscReal *u, D[36] = {0}, l[6], b[6] = {0};
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * n, &u));
+  PetscCall(SphereTableValues(&s->sphere->fine, HARMONIC, v->count, 3, U, u));
+  for (int d = 0; d < 3; d++) {
+    X0[d] = 0;
+    for (PetscInt i = 0; i < n; i++)
+      X0[d] += s->sphere->fine.grid.weight[i] * s->J[i] * s->D[HARMONIC][d * n + i] / s->area;
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal dA = s->sphere->fine.grid.weight[i] * s->J[i];
+    PetscReal m[6], normal = 0;
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      m[d] = s->normal[d * n + i];
+      m[3 + d] = (s->D[HARMONIC][e * n + i] - X0[e]) * s->normal[f * n + i] -
+                 (s->D[HARMONIC][f * n + i] - X0[f]) * s->normal[e * n + i];
+      normal += u[d * n + i] * s->normal[d * n + i];
+    }
+    for (int j = 0; j < 6; j++) {
+      b[j] += dA * m[j] * normal;
+      for (int k = 0; k < 6; k++) D[6 * j + k] += dA * m[j] * m[k];
+    }
+  }
+  PetscCall(PetscFree(u));
+  PetscCall(DenseEigen(6, D, l));
+  (void)PetscArrayzero(q, 6);
+  for (int j = 0; j < 6; j++) {
+    PetscReal part = 0;
+    for (int k = 0; k < 6; k++) part += D[6 * j + k] * b[k] / l[j];
+    for (int k = 0; k < 6 && l[j] > LEAST_MOTION * l[5]; k++) q[k] += part * D[6 * j + k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* w[size], the rigid part of the velocity U. */
+static PetscErrorCode RigidPart(Vesicle3 v, const PetscReal Xstar[], const PetscReal U[], PetscReal w[]) {
+  const PetscReal one = PetscSqrtReal(4 * PETSC_PI); /* coefficient of the constant 1 */
+  PetscReal X0[3], q[6];
+  PetscFunctionBeginUser;
+  PetscCall(FitRigid(v, U, X0, q));
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    for (PetscInt k = 0; k < v->count; k++)
+      w[d * v->count + k] = q[3 + e] * Xstar[f * v->count + k] - q[3 + f] * Xstar[e * v->count + k];
+    w[d * v->count] += one * (q[d] - q[3 + e] * X0[f] + q[3 + f] * X0[e]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscReal Xstar[], const PetscReal U[],
+                              PetscReal b[]) {
+  PetscReal *w, grown = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(v->size, &w));
+  PetscCall(PetscArrayzero(b, 4 * v->count));
+  CleanLabels(v, Xhat, w);
+  PetscCall(AddTangential(v, -1, w, b));
+  if (U) PetscCall(RigidPart(v, Xstar, U, w));
+  if (U) PetscCall(AddTangential(v, 1, w, b));
+  for (PetscInt k = 0; k < v->size; k++) grown += v->columns[v->size * v->size + k] * (Xhat[k] - Xstar[k]);
+  b[v->size] = v->a0 * (grown - (v->setting.area - v->at->area) / PetscSqrtReal(4 * PETSC_PI));
+  PetscCall(PetscFree(w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Matrix(Vesicle3 v, PetscReal B[]) {
+  const PetscInt size = v->size, n = 4 * v->count;
+  PetscReal *LM, trace = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * size, &LM));
+  PetscCall(DenseProduct(PETSC_FALSE, n, size, size, v->rows, v->M, LM));
+  PetscCall(DenseProduct(PETSC_FALSE, n, n, size, LM, v->columns, B));
+  PetscCall(PetscFree(LM));
+  for (PetscInt k = 0; k < n * n; k++) B[k] = -B[k];
+  for (PetscInt l = 0; l < size; l++) {
+    const PetscReal clean = v->clean[l] / v->a0;
+    for (PetscInt k = 0; k < size; k++) B[n * l + k] += clean * v->rows[n * l + k];
+    B[(n + 1) * l] += 1 + clean;
+  }
+  for (PetscInt k = size; k < n; k++) trace += B[(n + 1) * k];
+  for (PetscInt k = size; k < n; k++) B[(n + 1) * k] += LEAST_TENSION * trace / v->count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3KeepVolume(Vesicle3 v, PetscReal X[]) {
+  PetscReal *shift;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(v->size, &shift));
+  for (int pass = 0; pass < 2; pass++) {
+    PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
+    PetscCall(SphereTableProject(&v->at->sphere->fine, v->count, 3, v->at->normal, shift));
+    for (PetscInt k = 0; k < v->size; k++) X[k] += shift[k] * (v->setting.volume - v->at->volume) / v->at->area;
+  }
+  PetscCall(PetscFree(shift));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

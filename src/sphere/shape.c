@@ -1,0 +1,71 @@
+#include "sphere/shape.h"
+#include "numerics/blas.h"
+
+/* Reduced volume of a spheroid with half axes r along and 1 across. */
+static PetscReal SpheroidReducedVolume(PetscReal r) {
+  const PetscReal e = PetscSqrtReal(r > 1 ? 1 - 1 / (r * r) : 1 - r * r);
+  const PetscReal cap = e < 1e-4 ? 1 : r > 1 ? r * PetscAsinReal(e) / e : r * r * PetscAtanhReal(e) / e;
+  return 4 * r / PetscPowReal(1 + cap, 1.5) / PETSC_SQRT2;
+}
+
+void ShapeSpheroid(PetscReal v, PetscBool oblate, PetscReal R, PetscReal *along, PetscReal *across) {
+  PetscReal low = oblate ? 1e-3 : 1, high = oblate ? 1 : 1e3;
+  for (int k = 0; k < 200; k++) {
+    const PetscReal r = 0.5 * (low + high);
+    if ((SpheroidReducedVolume(r) > v) == oblate)
+      high = r;
+    else
+      low = r;
+  }
+  *across = R / PetscCbrtReal(low);
+  *along = *across * low;
+}
+
+void ShapeAlign(PetscInt count, const PetscReal axis[3], const PetscReal center[3], PetscReal c[]) {
+  const PetscReal length = PetscSqrtReal(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  PetscReal h[3] = {1 + axis[0] / length, axis[1] / length, axis[2] / length}, h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+  if (h2 < 1e-12) h[1] = h2 = 1; /* along -x: half a turn about y */
+  for (PetscInt k = 0; k < count; k++) { /* half a turn about the middle h of x and the axis */
+    PetscReal x[3] = {c[k], c[count + k], c[2 * count + k]};
+    const PetscReal s = 2 * (h[0] * x[0] + h[1] * x[1] + h[2] * x[2]) / h2;
+    for (int d = 0; d < 3; d++) c[d * count + k] = s * h[d] - x[d];
+  }
+  for (int d = 0; d < 3 && center; d++) c[d * count] += PetscSqrtReal(4 * PETSC_PI) * center[d];
+}
+
+PetscErrorCode ShapeMeasure(Surface s, ShapeMoments *m) {
+  const PetscInt n = s->n;
+  PetscReal second[9] = {0}, l[3];
+  PetscFunctionBeginUser;
+  (void)PetscArrayzero(m->center, 3);
+  for (int pass = 0; pass < 2; pass++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal dA = s->sphere->fine.grid.weight[i] * s->J[i];
+      PetscReal r[3], rn = 0;
+      for (int d = 0; d < 3; d++) {
+        r[d] = s->D[HARMONIC][d * n + i] - (pass ? m->center[d] : 0);
+        rn += r[d] * s->normal[d * n + i];
+      }
+      for (int d = 0; d < 3; d++) {
+        if (!pass) m->center[d] += dA * rn * r[d] / (4 * s->volume);
+        for (int e = 0; e < 3 && pass; e++) second[3 * d + e] += dA * rn * r[d] * r[e] / 5;
+      }
+    }
+  PetscCall(DenseEigen(3, second, l));
+  for (int j = 0; j < 3; j++) {
+    m->axis[j] = PetscSqrtReal(5 * l[j] / s->volume);
+    PetscCall(PetscArraycpy(m->direction[j], second + 3 * j, 3));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal ShapeTail(PetscInt p, const PetscReal c[]) {
+  const PetscInt count = HarmonicsCount(p);
+  PetscReal tail = 0, all = 0;
+  for (PetscInt k = 0; k < 3 * count; k++) {
+    const PetscInt l = HarmonicsDegree(k % count);
+    if (l > 0) all += c[k] * c[k];
+    if (4 * l > 3 * p) tail += c[k] * c[k];
+  }
+  return PetscSqrtReal(tail / all);
+}
