@@ -57,6 +57,8 @@ typedef struct {
   const OptionRow *row;           /* [n], borrowed */
   const OptionDefault *dependent; /* borrowed */
   PetscBool *given;               /* [n], whether the user gave it */
+  /* what has to be there for a whole group of rows, for a message, or NULL: it is there. NULL: no groups */
+  const char *(*missing)(const OptionRow *row, const void *values);
 } OptionTable;
 
 /* OptionsRead - make the table of n rows and read each option of the options database, or its default, into values.
@@ -78,9 +80,9 @@ PETSC_EXTERN PetscErrorCode OptionsDepend(const OptionTable *table, void *values
 PETSC_EXTERN PetscBool OptionDepends(const OptionTable *table, const void *values, const OptionDefault *dependent,
                                      char value[OPTION_MAX_NAME]);
 
-/* OptionUsed - whether what an option needs is there. Not collective. OptionsCheckUsed - stop when the user gave one
-   whose need is not met. Collective. */
-PETSC_EXTERN PetscBool OptionUsed(const OptionRow *row, const void *values);
+/* OptionMissing - what an option needs and is not there, for a message; NULL: nothing. Not collective. OptionsCheckUsed -
+   stop when the user gave one that needs something. Collective. */
+PETSC_EXTERN const char *OptionMissing(const OptionTable *table, const OptionRow *row, const void *values);
 PETSC_EXTERN PetscErrorCode OptionsCheckUsed(const OptionTable *table, const void *values);
 
 /* OptionText - the i-th option's value in force as text, to be freed with PetscFree. OptionValue - the same, cut to

@@ -83,22 +83,25 @@ PetscErrorCode OptionsDepend(const OptionTable *t, void *values) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool OptionUsed(const OptionRow *row, const void *values) {
+const char *OptionMissing(const OptionTable *t, const OptionRow *row, const void *values) {
   const OptionNeed *need = row->need;
-  if (!need) return PETSC_TRUE;
-  if (need->met) return need->met(values);
-  return need->any_of >> *(const PetscInt *)((const char *)values + need->offset) & 1 ? PETSC_TRUE : PETSC_FALSE;
+  const char *missing = t->missing ? t->missing(row, values) : NULL;
+  if (missing || !need) return missing;
+  const PetscBool there =
+      need->met ? need->met(values) : need->any_of >> *(const PetscInt *)((const char *)values + need->offset) & 1;
+  return there ? NULL : need->what;
 }
 
 PetscErrorCode OptionsCheckUsed(const OptionTable *t, const void *values) {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
+    const char *const missing = OptionMissing(t, &t->row[i], values);
     const char *value = NULL; /* as it was typed */
-    if (!t->given[i] || OptionUsed(&t->row[i], values)) continue;
+    if (!t->given[i] || !missing) continue;
     PetscCall(PetscOptionsFindPair(NULL, NULL, t->row[i].name, &value, NULL));
     SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
             "%s%s%.128s: not used by this scene; allowed: with %s (-allow_unused_options goes on)", t->row[i].name,
-            value && *value ? " " : "", value ? value : "", t->row[i].need->what);
+            value && *value ? " " : "", value ? value : "", missing);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,7 +124,7 @@ PetscErrorCode OptionsWrite(const OptionTable *t, const void *values, const char
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
     char *text;
-    PetscBool left = OptionUsed(&t->row[i], values) ? PETSC_FALSE : PETSC_TRUE;
+    PetscBool left = OptionMissing(t, &t->row[i], values) ? PETSC_TRUE : PETSC_FALSE;
     for (PetscInt k = 0; skip[k] && !left; k++) left = !strcmp(skip[k], t->row[i].name);
     if (left) continue;
     PetscCall(OptionText(t, values, i, &text));

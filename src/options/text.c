@@ -18,7 +18,7 @@ static PetscBool OptionInRange(const char *range, PetscReal x) {
   double a, b;
   if (!strcmp(range, ">0")) return x > 0;
   if (sscanf(range, ">=%lf", &a) == 1) return x >= a;
-  if (sscanf(range, "(%lf,%lf)", &a, &b) == 2) return x > a && x < b;
+  if (sscanf(range, "(%lf,%lf)", &a, &b) == 2) return x > a && (x < b || (x == b && strchr(range, ']')));
   if (sscanf(range, "[%lf,%lf]", &a, &b) == 2) return x >= a && x <= b;
   return PETSC_TRUE;
 }

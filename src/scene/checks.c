@@ -44,7 +44,7 @@ PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]) {
 
 PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt count,
                               const char what[], const char one[]) {
-  const char *const number = each == 1 ? "one" : "two";
+  const char *const number = each == 1 ? "one" : each == 2 ? "two" : "three";
   PetscFunctionBeginUser;
   PetvesCheck(n == each || n == each * count, scene->comm,
               "%s: %" PetscInt_FMT " number%s given for %" PetscInt_FMT " %.*s; allowed: %s for all or %s %s", name, n,

@@ -13,7 +13,7 @@ typedef struct {
 } SceneRule;
 
 /* SceneRefuse - stop with the message of the first rule that is broken. SCENE_REFUSE_IF - one rule. SceneCheckList -
-   stop unless a list has `each` numbers (1 or 2) for all of `count` "vesicles" (what), or `each` numbers "a vesicle"
+   stop unless a list has `each` numbers (1 to 3) for all of `count` "vesicles" (what), or `each` numbers "a vesicle"
    (one). Collective. */
 PETSC_EXTERN PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]);
 PETSC_EXTERN PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt count,

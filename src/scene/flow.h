@@ -10,13 +10,15 @@ typedef enum {
   FLOW_EXTENSION,
   FLOW_UNIFORM,
   FLOW_CUSTOM,
-  FLOW_FORMULA
+  FLOW_FORMULA,
+  FLOW_AXIAL,
+  FLOW_TUBE
 } FlowType;
 
 typedef struct {
   PetscInt type; /* FlowType */
   PetscReal rate, peak, half_width, center[2];
-  RealList velocity;                   /* FLOW_UNIFORM: u_x, u_y */
+  RealList velocity;                   /* FLOW_UNIFORM: u_x, u_y, in three dimensions u_z */
   PetscReal chi, ca, ca_stretching;    /* what the user gives in place of rate or peak */
   char formula[2][PETSC_MAX_PATH_LEN]; /* FLOW_FORMULA: u_x, u_y */
   PetvesFlow function;                 /* FLOW_CUSTOM: the caller's, with its context; FLOW_FORMULA: the formulas' */

@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 #include "kernel/kernel.h"
 #include "scene/checks.h"
+#include "scene/space.h"
 #include "scene/vesicles.h"
 
 /* Penalty's springs, where none are given: half of what the step bears. */
@@ -22,6 +23,11 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->vesicles.area_scale = 1;
   /* 1  what the user gives, or the table's defaults */
   PetscCall(SceneReadOptions(comm, s));
+  if (s->dim == DIM_SPACE) {
+    PetscCall(OptionsDepend(&s->options, s));
+    PetscCall(SceneResolveSpace(s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   /* 2  -scheme_auto: all but box, grid and steps */
   PetscCall(SceneChooseByError(s, AUTO_FIRST));
   /* 3  defaults that depend on what is known by now */

@@ -2,11 +2,12 @@
 #include "scene/table.h"
 #include "kernel/kernel.h"
 #include "scene/properties.h"
+#include "scene/space.h"
 
 #define AT(member) offsetof(struct _p_Scene, member)
 
 static PetscBool HasVesicles(const void *scene) {
-  return ((Scene)scene)->shape.vesicles > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->shape.vesicles > 0 || ((Scene)scene)->dim == DIM_SPACE ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscBool HasBodies(const void *scene) {
@@ -88,8 +89,8 @@ static PetscBool IsChannel(const void *scene) {
 /* Conditions under which an option means something: the last but one column of the table. */
 /* clang-format off */
 static const OptionNeed
-  need_strain = {"-flow_type shear or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_EXTENSION)},
-  need_channel = {"-flow_type poiseuille", AT(flow.type), IS(FLOW_POISEUILLE)},
+  need_strain = {"-flow_type shear, extension or axial", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_EXTENSION) | IS(FLOW_AXIAL)},
+  need_channel = {"-flow_type poiseuille or tube", AT(flow.type), IS(FLOW_POISEUILLE) | IS(FLOW_TUBE)},
   need_extension = {"-flow_type extension", AT(flow.type), IS(FLOW_EXTENSION)},
   need_sheared = {"-flow_type shear, poiseuille or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_POISEUILLE) | IS(FLOW_EXTENSION) | IS(FLOW_UNIFORM)},
   need_flow = {"a -flow_type that is not quiescent", AT(flow.type), ~(IS(FLOW_QUIESCENT))},
@@ -123,6 +124,7 @@ static const OptionNeed
   need_solid_centers = {"posts that are in no lattice and not packed, couette or constriction (-obstacle_shape)", .met = HasSolidCenters},
   need_free = {"-obstacle_free", .met = HasFreeBodies},
   need_heavy = {"vesicles and -scheme_type coupled, or -obstacle_free", .met = HasHeavy},
+  need_space = {"-dim 3", AT(dim), IS(DIM_SPACE)},
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
 
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
@@ -130,11 +132,12 @@ static const OptionNeed
    -flow_ca and -flow_ca_stretching what they stand for is compared. */
 #define MAY_CHANGE PETSC_TRUE
 static const OptionRow table[] = {
+  {"-dim", OPT_ENUM, AT(dim), "2", "2|3", "dimensions; 3: vesicles in unbounded fluid, surfaces in spherical harmonics"},
   {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
   {"-domain_cells", OPT_INTS, AT(domain.cells), "128,128", ">=8", "cells in x and y; cells must be square"},
   {"-domain_bc_x", OPT_ENUM, AT(fluid.bc[0]), "wall", "wall|periodic|free", "boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields"},
   {"-domain_bc_y", OPT_ENUM, AT(fluid.bc[1]), "wall", "wall|periodic|free", "boundaries at y_min and y_max; periodic where x is periodic too"},
-  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom|formula", "background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type"},
+  {"-flow_type", OPT_ENUM, AT(flow.type), "quiescent", "quiescent|shear|poiseuille|extension|uniform|custom|formula|axial|tube", "background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type"},
   {"-flow_rate", OPT_REAL, AT(flow.rate), "1", "any", "rate of shear or extension (1/time)", &need_strain},
   {"-flow_chi", OPT_REAL, AT(flow.chi), "0", "any", "in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle", &need_strain, MAY_CHANGE},
   {"-flow_ca_stretching", OPT_REAL, AT(flow.ca_stretching), "0", "any", "in place of -flow_rate: capillary number nu rate R0/E_s, R0 of the largest vesicle, E_s the largest -membrane_stretching", &need_strain, MAY_CHANGE},
@@ -170,6 +173,11 @@ static const OptionRow table[] = {
   {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")", &need_vesicles},
   {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing", &need_vesicles},
   {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")", &need_vesicles, MAY_CHANGE},
+  {"-vesicle_spheroid", OPT_ENUM, AT(space.oblate), "prolate", "prolate|oblate", "three dimensions: initial shape, a spheroid about -vesicle_axis", &need_space},
+  {"-vesicle_radius", OPT_REALS, AT(space.radius), "1", ">0", "R0 of the volume 4 pi R0^3/3, one for all, or one a vesicle (length)", &need_space},
+  {"-vesicle_reduced_volume", OPT_REALS, AT(space.reduced_volume), "0.9", "(0,1]", "v = 6 sqrt(pi) volume/area^(3/2), one for all, or one a vesicle", &need_space},
+  {"-vesicle_half_axes", OPT_REALS, AT(space.half_axes), "1,1,1", ">0", "of an ellipsoid, in place of radius and reduced volume, the first along -vesicle_axis; three for all, or three a vesicle (length)", &need_space},
+  {"-vesicle_axis", OPT_REALS, AT(space.axis), "1,0,0", "any", "direction of a spheroid's axis, of any length; three numbers for all, or three a vesicle", &need_space},
   {"-obstacle_shape", OPT_ENUM, AT(obstacles.shape), "none", "none|posts|couette|constriction|file", "solid bodies in the fluid: circles, two circles with fluid between them, two bumps on the walls y_min and y_max that face one another, curves of a file"},
   {"-obstacle_radius", OPT_REALS, AT(obstacles.radius), "0.2", ">0", "of posts: one for all or one each; of couette: the inner and the outer one (length)", &need_circles},
   {"-obstacle_center", OPT_REALS, AT(obstacles.center), "0,0", "any", "x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)", &need_solid_centers},
@@ -216,6 +224,9 @@ static const OptionRow table[] = {
   {"-membrane_memory", OPT_REALS, AT(membrane.memory), "0", ">=0", "coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature", &need_vesicles},
   {"-membrane_rest", OPT_PATH, AT(membrane.rest), "initial", "", "of membranes that stretch or remember: the shape at rest, the initial one, a circle of its length, or the curve of a file (initial|circle|FILE); its first point is that of the initial curve", &need_vesicles},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
+  {"-sphere_degree", OPT_INT, AT(space.degree), "12", "[4,32]", "p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many", &need_space},
+  {"-sphere_label_rate", OPT_REAL, AT(space.label_rate), "0", ">=0", "rate at which labels are drawn to a spectrum that falls off (1/time); 0: 10 times the larger of the flow's rate and bending/(nu R0^3)", &need_space},
+  {"-bending_newton", OPT_INT, AT(space.newton), "1", "[1,2]", "Newton steps on the bending energy within a time step; 2: larger steps of stiff membranes", &need_space, MAY_CHANGE},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE},
   {"-time_end", OPT_REAL, AT(time.end), "1", ">=0", "end time, reached exactly: the last steps are shortened (time)", NULL, MAY_CHANGE},
   {"-time_adapt", OPT_ENUM, AT(time.adapt), "none", "none|error", "step size: fixed, or from an error estimate (coupled of order 2 or 3)", &need_adaptable},
@@ -308,6 +319,7 @@ static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
 /* Between walls in y the Poiseuille flow vanishes on both. */
 static PetscBool IsWalled(const void *scene) {
   const Scene s = (Scene)scene;
+  if (s->dim == DIM_SPACE) return PETSC_FALSE;
   const RealList box = s->domain.box; /* not checked yet */
   if (s->flow.type != FLOW_POISEUILLE || s->fluid.bc[1] != BC_WALL || box.n != 4) return PETSC_FALSE;
   return box.v[2] < box.v[3] ? PETSC_TRUE : PETSC_FALSE;
@@ -349,6 +361,8 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
                                              {"-flow_ca", "-flow_peak_velocity"},
                                              {"-vesicle_semi_axes", "-vesicle_area"},
                                              {"-vesicle_semi_axes", "-vesicle_reduced_area"},
+                                             {"-vesicle_half_axes", "-vesicle_radius"},
+                                             {"-vesicle_half_axes", "-vesicle_reduced_volume"},
                                              {"-vesicle_markers", "-vesicle_spacing"},
                                              {"-obstacle_center", "-obstacle_lattice"},
                                              {"-obstacle_center", "-obstacle_count"},
@@ -356,6 +370,7 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
 
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;
+  scene->options.missing = SceneSpaceMissing;
   PetscCall(OptionsRead(comm, "petves: inextensible vesicles in two-dimensional viscous flow", TABLE_SIZE, table,
                         scene_defaults, &scene->options, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -370,13 +385,19 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
      ellipse, or of the flow, would be refused when read back */
   const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool counted = SceneGiven(scene, "-vesicle_count");
-  const char *skip[10] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca", "-flow_ca_stretching"};
+  const char *skip[12] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca", "-flow_ca_stretching"};
   PetscInt skipped = 5;
   PetscFunctionBeginUser;
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */
   if (!by_area || (packed && counted)) skip[skipped++] = "-vesicle_area";
   if (!by_area) skip[skipped++] = "-vesicle_reduced_area";
+  if (!SceneGiven(scene, "-vesicle_half_axes")) {
+    skip[skipped++] = "-vesicle_half_axes";
+  } else {
+    skip[skipped++] = "-vesicle_radius";
+    skip[skipped++] = "-vesicle_reduced_volume";
+  }
   PetscCall(OptionsWrite(&scene->options, scene, skip, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 #include "scene/checks.h"
 #include "scene/properties.h"
+#include "scene/space.h"
 #include "scene/table.h"
 
 /* "what = low", or "what = low to high". */
@@ -115,7 +116,7 @@ static PetscErrorCode ViewDefaults(Scene scene, PetscViewer v) {
   PetscFunctionBeginUser;
   for (const OptionDefault *d = scene_defaults; d->name; d++) {
     const OptionRow *row = &scene->options.row[OptionFind(&scene->options, d->name)];
-    if (OptionUsed(row, scene) && OptionDepends(&scene->options, scene, d, value))
+    if (!OptionMissing(&scene->options, row, scene) && OptionDepends(&scene->options, scene, d, value))
       PetscCall(PetscViewerASCIIPrintf(v, "default of this scene: %s %s, %s\n", d->name, value, d->why));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -127,6 +128,10 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
   const Shape *shape = &scene->shape;
   PetscFunctionBeginUser;
+  if (scene->dim == DIM_SPACE) {
+    PetscCall(SceneViewSpace(scene, v));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
   PetscCall(PetscViewerASCIIPushTab(v));
   PetscCall(PetscViewerASCIIPrintf(

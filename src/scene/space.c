@@ -1,0 +1,119 @@
+#include "scene/space.h"
+#include "scene/checks.h"
+#include "scene/properties.h"
+
+/* Options of the plane that scenes in space have too. */
+static const char *const in_space[] = {
+    "-dim", "-flow_type", "-flow_rate", "-flow_chi", "-flow_ca", "-flow_peak_velocity", "-flow_velocity",
+    "-flow_half_width", "-flow_center_x", "-flow_center_y", "-fluid_viscosity", "-vesicle_count", "-vesicle_center",
+    "-vesicle_bending", "-vesicle_viscosity_ratio", "-scheme_type", "-scheme_order", "-time_step", "-time_end",
+    "-output_dir", "-output_overwrite", "-output_every", "-checkpoint_every", "-checkpoint_keep", "-restart",
+    "-time_wall_limit", "-view", "-allow_unused_options", NULL};
+
+/* What scenes in space have in place of options of the plane. */
+static const char *const instead[][2] = {{"-vesicle_area", "-dim 2; three dimensions have -vesicle_radius"},
+                                         {"-vesicle_reduced_area", "-dim 2; three dimensions have -vesicle_reduced_volume"},
+                                         {"-vesicle_semi_axes", "-dim 2; three dimensions have -vesicle_half_axes"},
+                                         {"-vesicle_shape", "-dim 2; three dimensions have -vesicle_spheroid"},
+                                         {"-vesicle_angle", "-dim 2; three dimensions have -vesicle_axis"},
+                                         {"-vesicle_markers", "-dim 2; three dimensions have -sphere_degree"},
+                                         {"-domain_cells", "-dim 2; three dimensions have no grid, see -sphere_degree"},
+                                         {"-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
+
+const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
+  const OptionNeed *need = row->need;
+  if (((Scene)scene)->dim == DIM_PLANE) return NULL;
+  if (need && need->any_of && need->offset == offsetof(struct _p_Scene, dim)) return NULL; /* one of space alone */
+  for (int k = 0; in_space[k]; k++)
+    if (!strcmp(row->name, in_space[k])) return NULL;
+  for (size_t k = 0; k < sizeof(instead) / sizeof(instead[0]); k++)
+    if (!strcmp(row->name, instead[k][0])) return instead[k][1];
+  return "-dim 2";
+}
+
+static PetscErrorCode CheckLists(Scene s) {
+  const SceneSpace *own = &s->space;
+  const PetscInt count = s->vesicles.count;
+  const struct {
+    const char *name;
+    PetscInt n, each;
+  } lists[] = {{"-vesicle_radius", own->radius.n, 1},          {"-vesicle_reduced_volume", own->reduced_volume.n, 1},
+               {"-vesicle_half_axes", own->half_axes.n, 3},    {"-vesicle_axis", own->axis.n, 3},
+               {"-vesicle_bending", s->membrane.stiffness.n, 1}, {"-vesicle_viscosity_ratio", s->membrane.viscosity_ratio.n, 1}};
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
+    PetscCall(SceneCheckList(s, lists[k].name, lists[k].n, lists[k].each, count, "vesicles", "a vesicle"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest radius, and the bending modulus over nu R0^3 of the stiffest vesicle (1/time). */
+static void Scales(Scene s, PetscReal *R0, PetscReal *relaxation) {
+  *R0 = *relaxation = 0;
+  for (PetscInt v = 0; v < s->vesicles.count; v++) {
+    PetscReal R = ListEntry(&s->space.radius, 1, v, 0);
+    if (SceneGiven(s, "-vesicle_half_axes"))
+      R = PetscCbrtReal(ListEntry(&s->space.half_axes, 3, v, 0) * ListEntry(&s->space.half_axes, 3, v, 1) *
+                        ListEntry(&s->space.half_axes, 3, v, 2));
+    *R0 = PetscMax(*R0, R);
+    *relaxation = PetscMax(*relaxation, ListEntry(&s->membrane.stiffness, 1, v, 0) / (s->fluid.nu * R * R * R));
+  }
+}
+
+PetscErrorCode SceneResolveSpace(Draft s) {
+  const PetscInt count = s->vesicles.count;
+  PetscReal R0, relaxation;
+  PetscFunctionBeginUser;
+  PetscCall(SceneCheckList(s, "-vesicle_center", SceneGiven(s, "-vesicle_center") || count > 1 ? s->vesicles.center.n : 3, 3, count, "vesicles", "a vesicle"));
+  PetscCall(CheckLists(s));
+  const PetscBool ratio = SceneHasContrast(s);
+  const SceneRule rules[] = {
+      {FlowIsCustom(&s->flow), "-flow_type {-flow_type}: of the plane; allowed with -dim 3: quiescent|shear|poiseuille|extension|uniform|axial|tube"},
+      {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3, "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
+      {strcmp(s->scheme.type, "coupled") != 0, "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
+      {SceneGiven(s, "-vesicle_half_axes") && (SceneGiven(s, "-vesicle_radius") || SceneGiven(s, "-vesicle_reduced_volume")), "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both descriptions"},
+      {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number from 4 to 32"},
+      {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with -dim 3: 1, or one vesicle"},
+      {s->membrane.stiffness.v[0] == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
+  PetscCall(REFUSE(s, rules));
+  for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
+    const PetscReal *axis = s->space.axis.v + 3 * v;
+    PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0, "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
+  }
+  Scales(s, &R0, &relaxation);
+  if (s->flow.chi != 0) s->flow.rate = s->flow.chi * relaxation;
+  if (s->flow.ca != 0) s->flow.peak = s->flow.ca * relaxation * R0;
+  const PetscReal rate = s->flow.type == FLOW_AXIAL ? s->flow.rate : s->flow.type == FLOW_TUBE ? s->flow.peak / s->flow.half_width : FlowShearRate(&s->flow);
+  if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(PetscAbsReal(rate), relaxation);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneViewSpace(Scene s, PetscViewer v) {
+  const PetscInt n = PetscSqr(s->space.degree + 1);
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
+  PetscCall(PetscViewerASCIIPushTab(v));
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow without bounds in three dimensions, nu = %g\n", (double)s->fluid.nu));
+  PetscCall(PetscViewerASCIIPrintf(v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " unknowns, spherical harmonics of degree %" PetscInt_FMT "\n",
+                                   s->vesicles.count, 4 * n, s->space.degree));
+  PetscCall(PetscViewerASCIIPrintf(v, "scheme: order %" PetscInt_FMT ", dt = %g to t = %g, labels at the rate %g\n", s->scheme.order,
+                                   (double)s->time.dt, (double)s->time.end, (double)s->space.label_rate));
+  PetscCall(PetscViewerASCIIPopTab(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void Flow3Velocities(const Flow *f, PetscInt n, const PetscReal X[], PetscReal u[]) {
+  const PetscReal L2 = f->half_width * f->half_width;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal x = X[i] - f->center[0], y = X[n + i] - f->center[1], z = X[2 * n + i];
+    PetscReal at[3] = {0, 0, 0};
+    if (f->type == FLOW_SHEAR) at[0] = f->rate * y;
+    if (f->type == FLOW_POISEUILLE) at[0] = f->peak * (1 - y * y / L2);
+    if (f->type == FLOW_TUBE) at[0] = f->peak * (1 - (y * y + z * z) / L2);
+    if (f->type == FLOW_EXTENSION || f->type == FLOW_AXIAL) {
+      at[0] = f->rate * x;
+      at[1] = -f->rate * y * (f->type == FLOW_AXIAL ? 0.5 : 1);
+      at[2] = f->type == FLOW_AXIAL ? -0.5 * f->rate * z : 0;
+    }
+    for (int d = 0; d < 3; d++) u[d * n + i] = f->type == FLOW_UNIFORM ? f->velocity.v[d] : at[d];
+  }
+}

@@ -1,0 +1,58 @@
+#include "space/fromscene.h"
+#include "sphere/shape.h"
+
+static void SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+  Flow3Velocities((const Flow *)flow, n, X, u);
+}
+
+/* Coefficients of a vesicle's first shape. */
+static void FirstShape(Scene s, PetscInt v, PetscReal X[]) {
+  const SceneSpace *own = &s->space;
+  PetscReal axes[3], axis[3], center[3];
+  for (int d = 0; d < 3; d++) {
+    axes[d] = ListEntry(&own->half_axes, 3, v, d);
+    axis[d] = ListEntry(&own->axis, 3, v, d);
+    center[d] = s->vesicles.center.n >= 3 ? ListEntry(&s->vesicles.center, 3, v, d) : 0;
+  }
+  if (!SceneGiven(s, "-vesicle_half_axes")) {
+    ShapeSpheroid(ListEntry(&own->reduced_volume, 1, v, 0), own->oblate ? PETSC_TRUE : PETSC_FALSE,
+                  ListEntry(&own->radius, 1, v, 0), &axes[0], &axes[1]);
+    axes[2] = axes[1];
+  }
+  SurfaceEllipsoid(own->degree, axes, X);
+  ShapeAlign(HarmonicsCount(own->degree), axis, center, X);
+}
+
+PetscErrorCode SpaceFromScene(Scene s, Space *space) {
+  const PetscInt count = s->vesicles.count, size = 3 * HarmonicsCount(s->space.degree);
+  const SpaceSetting setting = {.p = s->space.degree,
+                                .order = s->scheme.order,
+                                .newton = s->space.newton,
+                                .rtol = 1e-9,
+                                .flow = SceneFlow3,
+                                .context = &s->flow,
+                                .policy = {.base = s->time.dt}};
+  Vesicle3Setting *material;
+  PetscReal *X;
+  Sphere sphere;
+  Surface surface;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(count, &material, count * size, &X));
+  PetscCall(SphereCreate(s->space.degree, &sphere));
+  PetscCall(SurfaceCreate(sphere, &surface));
+  for (PetscInt v = 0; v < count; v++) {
+    FirstShape(s, v, X + v * size);
+    PetscCall(SurfacePlace(surface, X + v * size, PETSC_FALSE));
+    material[v] = (Vesicle3Setting){.nu = s->fluid.nu,
+                                    .bending = ListEntry(&s->membrane.stiffness, 1, v, 0),
+                                    .label_rate = s->space.label_rate,
+                                    .ratio = SceneViscosityRatio(s, v),
+                                    .area = surface->area,
+                                    .volume = surface->volume};
+  }
+  PetscCall(SurfaceDestroy(&surface));
+  PetscCall(SphereDestroy(&sphere));
+  PetscCall(SpaceCreate(s->comm, &setting, count, material, X, space));
+  PetscCall(PetscFree2(material, X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
