@@ -52,7 +52,7 @@ static PetscErrorCode AppendedCheck(AppendedFile *a) {
 static PetscErrorCode AppendedMake(const AppendedKind *kind, MPI_Comm comm, const char path[], H5File *f) {
   PetscFunctionBeginUser;
   PetscCall(H5FileOpen(comm, path, H5_NEW, f));
-  PetscCall(kind->describe(kind->scheme, f));
+  PetscCall(kind->describe(kind->context, f));
   H5CreateSeries(f, "/time", PETSC_FALSE, 0, NULL);
   H5PutUnit(f, "/time", "time");
   for (PetscInt k = 0; k < kind->n; k++) {
@@ -181,7 +181,7 @@ static PetscErrorCode AppendedFind(AppendedFile *a, const char path[], PetscInt 
   PetscCall(PetscMalloc1(count, &a->time));
   for (; !failed && a->count < PetscMin(length, count); a->count++) {
     PetscCall(H5ReadArray(&a->file, "/time", a->count, 1, &a->time[a->count]));
-    if (a->time[a->count] > a->kind.scheme->state.t) break;
+    if (a->time[a->count] > a->kind.now) break;
   }
   PetscCall(H5FileFailed(&a->file, &failed));
   PetvesCheck(!failed && a->count == count, a->folder->comm,

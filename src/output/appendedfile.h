@@ -15,7 +15,6 @@
 #pragma once
 #include "output/folder.h"
 #include "output/h5series.h"
-#include "scheme/scheme.h"
 
 #define APPENDED_SERIES 32
 #define APPENDED_NAME 32
@@ -32,8 +31,9 @@ typedef struct {
 typedef struct {
   const char *name;    /* name of the file in the folder */
   const char *entries; /* what an entry is, in messages: "frames" */
-  Scheme scheme;       /* borrowed */
-  PetscErrorCode (*describe)(Scheme scheme,
+  PetscReal now;       /* no entry of an earlier run is later */
+  const void *context; /* of */
+  PetscErrorCode (*describe)(const void *context,
                              H5File *file); /* writes attributes and what else is no series; collective */
   PetscInt n;                               /* number of series */
   AppendedSeries series[APPENDED_SERIES];

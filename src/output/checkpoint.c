@@ -130,17 +130,25 @@ PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNu
 }
 
 /* Write the scene's options and the digests of its files, by which a restart knows the scene, and the vesicles. */
+PetscErrorCode CheckpointPutScene(H5File *file, Scene scene) {
+  const PetscInt format = CHECKPOINT_FORMAT;
+  PetscFunctionBeginUser;
+  H5Put(file, "format", H5_INT, 1, &format);
+  H5PutText(file, "version", PETVES_VERSION);
+  for (PetscInt i = 0; SceneOptionRow(i); i++) {
+    char *value;
+    PetscCall(OptionText(&scene->options, scene, i, &value));
+    H5PutText(file, SceneOptionRow(i)->name, value);
+    PetscCall(PetscFree(value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CheckpointWriteScene(Scheme s, H5File *file) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
   PetscFunctionBeginUser;
-  H5PutText(file, "version", PETVES_VERSION);
-  for (PetscInt i = 0; SceneOptionRow(i); i++) {
-    char *value;
-    PetscCall(OptionText(&s->scene->options, s->scene, i, &value));
-    H5PutText(file, SceneOptionRow(i)->name, value);
-    PetscCall(PetscFree(value));
-  }
+  PetscCall(CheckpointPutScene(file, s->scene));
   H5PutText(file, "vesicle_digest", s->scene->shape.digest);
   H5PutText(file, "obstacle_digest", s->scene->obstacles.outline.digest);
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
@@ -253,25 +261,35 @@ void CheckpointClear(Folder *folder) {
   }
 }
 
+/* What a checkpoint is written from. */
+typedef struct {
+  Scheme scheme;
+  const Record *record;
+  Tracers *tracers;
+  PetscInt frames;
+} CheckpointContent;
+
 /* Write all of a checkpoint into the open file. /solver is what the solvers have kept from earlier steps. */
-static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r, Tracers *tracers, PetscInt frames) {
-  const PetscInt format = CHECKPOINT_FORMAT, numbers = SchemeMemorySize(s);
+static PetscErrorCode CheckpointWriteAll(void *context, H5File *file) {
+  const CheckpointContent *content = context;
+  const Scheme s = content->scheme;
+  const Record *r = content->record;
+  const PetscInt numbers = SchemeMemorySize(s);
   const State *q = &s->state;
   CheckpointNumbers n = {.times = {.step = q->step, .past = s->past, .t = q->t, .dt = q->dt, .dt_last = q->dt_last},
-                         .frames = frames,
+                         .frames = content->frames,
                          .totals = {r->solves, r->tension, r->bending, r->coupled}};
   PetscReal *memory;
   PetscFunctionBeginUser;
   n.times.plan = (StepPlan){
       .level = s->policy.adaptive ? s->plan.level : 0, .order = s->plan.order, .guess = s->plan.guess};
   for (PetscInt j = 0; j < s->past; j++) n.times.dt_earlier[j] = s->old[j].dt_last;
-  H5Put(file, "format", H5_INT, 1, &format);
   PetscCall(CheckpointMoveNumbers(file, PETSC_TRUE, &n));
   H5PutText(file, "series_row", r->text);
   PetscCall(CheckpointWriteScene(s, file));
   PetscCall(CheckpointVectors(file, PETSC_TRUE, s, 0, &s->state));
   for (PetscInt j = 0; j < s->past; j++) PetscCall(CheckpointVectors(file, PETSC_TRUE, s, j + 1, &s->old[j]));
-  PetscCall(CheckpointTracers(file, PETSC_TRUE, s, tracers));
+  PetscCall(CheckpointTracers(file, PETSC_TRUE, s, content->tracers));
   PetscCall(PetscMalloc1(numbers, &memory));
   PetscCall(SchemeRemember(s, memory));
   PetscCall(CheckpointEntry(file, PETSC_TRUE, "/solver", numbers, 1, memory));
@@ -279,16 +297,16 @@ static PetscErrorCode CheckpointWriteAll(H5File *file, Scheme s, const Record *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Tracers *tracers, PetscInt frames) {
+PetscErrorCode CheckpointStore(Checkpoint *c, PetscInt step, PetscErrorCode (*write)(void *, H5File *),
+                               void *context) {
   char path[PETSC_MAX_PATH_LEN];
   H5File file;
   PetscBool done = PETSC_TRUE;
   PetscErrorCode error;
   PetscFunctionBeginUser;
-  PetscCall(SchemeFields(s));
   FolderPath(c->folder, CHECKPOINT_TEMPORARY, path);
   PetscCall(H5FileOpen(c->folder->comm, path, H5_NEW, &file));
-  PetscCall(CheckpointWriteAll(&file, s, record, tracers, frames));
+  PetscCall(write(context, &file));
   H5FileClose(&file);
   if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path);
   error = FolderCheckOwn(c->folder); /* once more: writing took time */
@@ -298,6 +316,14 @@ PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Tr
   }
   PetscCall(error);
   PetscCall(FolderCheck(c->folder, done, "checkpoint.h5"));
-  c->step = s->state.step;
+  c->step = step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Tracers *tracers, PetscInt frames) {
+  CheckpointContent content = {.scheme = s, .record = record, .tracers = tracers, .frames = frames};
+  PetscFunctionBeginUser;
+  PetscCall(SchemeFields(s));
+  PetscCall(CheckpointStore(c, s->state.step, CheckpointWriteAll, &content));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -37,12 +37,20 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode CheckpointWrite(Checkpoint *checkpoint, Scheme scheme, const Record *record,
                                             Tracers *tracers, PetscInt frames);
 
+/* CheckpointStore - a checkpoint of that step, which `write` fills in, under its name and with its checksum, as
+   CheckpointWrite. Collective. */
+PETSC_EXTERN PetscErrorCode CheckpointStore(Checkpoint *checkpoint, PetscInt step,
+                                            PetscErrorCode (*write)(void *context, H5File *file), void *context);
+
 /* CheckpointAdopt - the checkpoint that -restart names, if it is in the folder, becomes the newest one: later ones
    belong to steps that are taken anew. Collective; stops with one line when the file cannot be renamed. */
 PETSC_EXTERN PetscErrorCode CheckpointAdopt(const Checkpoint *checkpoint, const char restart[]);
 
 /* CheckpointClear - remove all checkpoints of the folder, on rank 0. Not collective. */
 PETSC_EXTERN void CheckpointClear(Folder *folder);
+
+/* CheckpointPutScene - the format and every option in force. Collective. */
+PETSC_EXTERN PetscErrorCode CheckpointPutScene(H5File *file, Scene scene);
 
 /* CheckpointEntry - write or read n entries of `each` numbers, the same on every rank, as <group>/<name>; n = 0 does
    nothing. CheckpointVectors - write or read the vectors of one state of group j: 0 the present state, then those
@@ -54,6 +62,11 @@ PETSC_EXTERN PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const
 PETSC_EXTERN PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme scheme, PetscInt j, State *state);
 PETSC_EXTERN PetscErrorCode CheckpointTracers(H5File *file, PetscBool write, Scheme scheme, Tracers *tracers);
 PETSC_EXTERN PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *numbers);
+
+/* RestartOpen - open the checkpoint that -restart names, whose bytes are those that its checksum is of, and whose options
+   fit the scene. RestartEntries - stop unless all entries so far could be read. Collective; stop with one line. */
+PETSC_EXTERN PetscErrorCode RestartOpen(Scene scene, H5File *file);
+PETSC_EXTERN PetscErrorCode RestartEntries(Scene scene, const H5File *file);
 
 /* RestartRead - the state of -restart's checkpoint, the record, the tracers and the number of scheduled frames as they
    were. Rank 0 checks the checksum, which covers every byte; then all ranks read. Numbers that a run cannot have had

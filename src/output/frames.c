@@ -49,7 +49,8 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FramesDescribe(Scheme s, H5File *f) {
+static PetscErrorCode FramesDescribe(const void *context, H5File *f) {
+  const Scheme s = (Scheme)context;
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
   const Scene scene = s->scene;
@@ -112,7 +113,7 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
                                 {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2, .unit = "length"},
                                 {"/tracers/points", tracers, 2, .unit = "length"},
                                 {"/tracers/wrapped", FramesAreWrapped(s) ? tracers : 0, 2, .unit = "length"}};
-  AppendedKind kind = {.name = "run.h5", .entries = "frames", .scheme = s, .describe = FramesDescribe};
+  AppendedKind kind = {.name = "run.h5", .entries = "frames", .now = s->state.t, .context = s, .describe = FramesDescribe};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
     if (all[k].rows) kind.series[kind.n++] = all[k];

@@ -32,6 +32,9 @@ PETSC_EXTERN PetscErrorCode FramesOpen(Frames *frames, Folder *folder, Scheme sc
    goes on after its end. Collective; stops with one line when the frame cannot be written. */
 PETSC_EXTERN PetscErrorCode FramesWrite(Frames *frames, PetscBool scheduled);
 
+/* FramesPrintXdmf - one frame in run.xmf (Xdmf.print; framesxdmf.c). Not collective. */
+PETSC_EXTERN void FramesPrintXdmf(const void *frames, FILE *file, PetscInt frame, PetscReal time);
+
 /* FramesClose - close the file and free everything. good: all of it was written, or a line has said that it was not;
    TRUE on ranks other than 0. Not collective. */
 PETSC_EXTERN PetscErrorCode FramesClose(Frames *frames, PetscBool *good);

@@ -44,7 +44,7 @@ PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
   PetscCall(FolderMake(&o->folder));
   PetscCall(FolderClaim(&o->folder, scene->output.restart, scene->output.overwrite, &o->go_on));
   o->checkpoint = (Checkpoint){.folder = &o->folder, .keep = scene->output.checkpoint_keep, .step = -1};
-  o->xdmf = (Xdmf){.folder = &o->folder, .scheme = scheme, .tracers = o->tracers.n, .file = -1};
+  o->xdmf = (Xdmf){.folder = &o->folder, .print = FramesPrintXdmf, .context = &o->frames, .file = -1};
   o->frames.tracers = &o->tracers;
   PetscCall(OutputOpenFiles(o, frames));
   o->summary = (Summary){.folder = &o->folder, .scheme = scheme, .record = &o->record};

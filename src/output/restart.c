@@ -125,7 +125,7 @@ static PetscErrorCode RestartVectors(Scheme s, const State *q) {
 }
 
 /* Refuse a file if something in it could not be read. */
-static PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
+PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
   PetscBool failed;
   PetscFunctionBeginUser;
   PetscCall(H5FileFailed(file, &failed));
@@ -190,13 +190,7 @@ static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Tra
                                      PetscReal memory[]) {
   const PetscInt numbers = SchemeMemorySize(s);
   CheckpointNumbers n = {.times.plan = {.order = 1, .guess = 1}}; /* allowed, where nothing can be read */
-  PetscBool plain;
   PetscFunctionBeginUser;
-  PetscCall(H5CheckLinks(file, &plain));
-  PetvesCheck(plain, s->scene->comm,
-              "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves",
-              s->scene->output.restart);
-  PetscCall(RestartOptions(s->scene, file));
   PetscCall(CheckpointMoveNumbers(file, PETSC_FALSE, &n));
   PetscCall(RestartEntries(s->scene, file));
   PetscCall(RestartFiles(s->scene, file));
@@ -211,14 +205,29 @@ static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Tra
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode RestartOpen(Scene scene, H5File *file) {
+  PetscBool plain;
+  PetscFunctionBeginUser;
+  PetscCall(RestartFile(scene));
+  PetscCall(H5FileOpen(scene->comm, scene->output.restart, H5_READ, file));
+  PetscCall(H5CheckLinks(file, &plain));
+  if (!plain) H5FileClose(file);
+  PetvesCheck(plain, scene->comm,
+              "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves",
+              scene->output.restart);
+  const PetscErrorCode fits = RestartOptions(scene, file);
+  if (fits) H5FileClose(file);
+  PetscCall(fits);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode RestartRead(Scheme s, Record *record, Tracers *tracers, PetscInt *frames) {
   PetscReal *memory;
   PetscErrorCode error;
   H5File file;
   PetscFunctionBeginUser;
-  PetscCall(RestartFile(s->scene));
+  PetscCall(RestartOpen(s->scene, &file));
   PetscCall(PetscMalloc1(SchemeMemorySize(s), &memory));
-  PetscCall(H5FileOpen(s->scene->comm, s->scene->output.restart, H5_READ, &file));
   error = RestartReadAll(s, &file, record, tracers, frames, memory);
   H5FileClose(&file);
   if (!error) error = SchemeRecall(s, memory);

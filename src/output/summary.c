@@ -13,17 +13,29 @@
 /* Seconds between progress lines. */
 #define PROGRESS_SECONDS 2
 
-PetscErrorCode SummaryProgress(Summary *s, PetscBool force) {
-  const State *q = &s->scheme->state;
-  const PetscReal t_end = s->scheme->scene->time.end;
+ProgressClock ProgressBegin(PetscReal from, PetscReal end) {
+  ProgressClock c = {.from = from, .end = end};
+  (void)PetscTime(&c.start);
+  c.printed = c.start;
+  return c;
+}
+
+PetscErrorCode ProgressSay(ProgressClock *c, MPI_Comm comm, PetscInt step, PetscReal t, PetscBool force) {
   PetscLogDouble now, left;
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&now));
-  if (!force && now - s->printed < PROGRESS_SECONDS) PetscFunctionReturn(PETSC_SUCCESS);
-  s->printed = now;
-  left = q->t > s->from ? (now - s->start) * PetscMax(0, t_end - q->t) / (q->t - s->from) : 0;
-  PetscCall(PetvesSay(s->folder->comm, "step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", q->step,
-                      (double)q->t, t_end > 0 ? 100 * PetscMin(1, (double)(q->t / t_end)) : 100, (double)left));
+  if (!force && now - c->printed < PROGRESS_SECONDS) PetscFunctionReturn(PETSC_SUCCESS);
+  c->printed = now;
+  left = t > c->from ? (now - c->start) * PetscMax(0, c->end - t) / (t - c->from) : 0;
+  PetscCall(PetvesSay(comm, "step %" PetscInt_FMT "  time %.6g  %3.0f %%  %.0f s left\n", step, (double)t,
+                      c->end > 0 ? 100 * PetscMin(1, (double)(t / c->end)) : 100, (double)left));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SummaryProgress(Summary *s, PetscBool force) {
+  const State *q = &s->scheme->state;
+  PetscFunctionBeginUser;
+  PetscCall(ProgressSay(&s->clock, s->folder->comm, q->step, q->t, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,22 +73,26 @@ static PetscErrorCode ResolvedPrintOthers(FILE *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SummaryPrintOptions(Scene scene, FILE *f) {
+  PetscFunctionBeginUser;
+  fprintf(f, "# every option in force: mpirun -n RANKS petves -options_file resolved.opts repeats the run\n");
+  PetscCall(SceneWriteOptions(scene, f));
+  PetscCall(ResolvedPrintOthers(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ResolvedPrint(FILE *f, const void *what) {
   const Scheme scheme = (Scheme)what;
   PetscFunctionBeginUser;
-  fprintf(f, "# every option in force: mpirun -n RANKS petves -options_file resolved.opts repeats the run\n");
-  PetscCall(SceneWriteOptions(scheme->scene, f));
+  PetscCall(SummaryPrintOptions(scheme->scene, f));
   PetscCall(SchemeWriteOptions(scheme, f));
-  PetscCall(ResolvedPrintOthers(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SummaryBegin(Summary *s) {
   PetscFunctionBeginUser;
   PetscCall(FolderWriteText(s->folder, "resolved.opts", ResolvedPrint, s->scheme));
-  PetscCall(PetscTime(&s->start));
-  s->printed = s->start;
-  s->from = s->scheme->state.t;
+  s->clock = ProgressBegin(s->scheme->state.t, s->scheme->scene->time.end);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,7 +140,7 @@ static PetscErrorCode TablePrint(const Summary *s, const char reason[]) {
 }
 
 /* Print a JSON string: quotes, backslashes and control characters are escaped. */
-static void JsonPrintString(FILE *f, const char *text) {
+void SummaryPrintString(FILE *f, const char *text) {
   fputc('"', f);
   for (; *text; text++) {
     if (*text == '"' || *text == '\\')
@@ -162,10 +178,10 @@ static void JsonPrintRatios(FILE *f, Scene scene) {
 /* Print the warnings of the run, in order, that of the scene first. */
 static void JsonPrintWarnings(FILE *f, const char scene[], const Warnings *w) {
   fprintf(f, "  \"warnings\": [");
-  if (*scene) JsonPrintString(f, scene);
+  if (*scene) SummaryPrintString(f, scene);
   for (PetscInt k = 0; k < w->n; k++) {
     if (k || *scene) fprintf(f, ", ");
-    JsonPrintString(f, w->text[k]);
+    SummaryPrintString(f, w->text[k]);
   }
   fprintf(f, "],\n");
 }
@@ -182,8 +198,8 @@ static void JsonPrintRow(FILE *f, const Record *record) {
   fprintf(f, "},\n");
 }
 
-/* Print when and where the run ended, and the words that its process was started with. */
-static void JsonPrintOrigin(FILE *f) {
+/* When and where the run ended, the words that its process was started with, versions. */
+void SummaryPrintOrigin(FILE *f) {
   FILE *const started = fopen("/proc/self/cmdline", "r"); /* with a zero behind each word */
   char *word = NULL;
   size_t room = 0;
@@ -193,15 +209,17 @@ static void JsonPrintOrigin(FILE *f) {
   (void)gethostname(host, sizeof(host) - 1);
   (void)strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   fprintf(f, "  \"ended\": \"%s\",\n  \"host\": ", date);
-  JsonPrintString(f, host);
+  SummaryPrintString(f, host);
   fprintf(f, ",\n  \"command\": [");
   for (int k = 0; started && getdelim(&word, &room, 0, started) > 0; k++) {
     fprintf(f, k ? ", " : "");
-    JsonPrintString(f, word);
+    SummaryPrintString(f, word);
   }
   fprintf(f, "],\n");
   free(word);
   if (started) fclose(started);
+  JsonPrintVersions(f);
+  fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());
 }
 
 static PetscErrorCode JsonPrint(FILE *f, const void *what) {
@@ -213,7 +231,7 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   int ranks;
   (void)MPI_Comm_size(s->folder->comm, &ranks);
   fprintf(f, "{\n  \"reason\": ");
-  JsonPrintString(f, s->reason);
+  SummaryPrintString(f, s->reason);
   JsonPrintRow(f, r);
   fprintf(f,
           "  \"totals\": {\"steps\": %d, \"nsolve\": %d, \"tension_its\": %d, \"bending_its\": %d, "
@@ -233,9 +251,7 @@ static PetscErrorCode JsonPrint(FILE *f, const void *what) {
   fprintf(f, scene->reynolds >= 0 ? "  \"reynolds\": %.6g,\n" : "  \"reynolds\": null,\n", (double)scene->reynolds);
   fprintf(f, "  \"cfl_max\": %.6g,\n", (double)r->cfl_max);
   JsonPrintWarnings(f, scene->warning, &s->scheme->warnings);
-  JsonPrintOrigin(f);
-  JsonPrintVersions(f);
-  fprintf(f, "  \"git_commit\": \"%s\"\n}\n", PetvesCommit());
+  SummaryPrintOrigin(f);
   return PETSC_SUCCESS;
 }
 
@@ -243,7 +259,7 @@ PetscErrorCode SummaryEnd(Summary *s, PetscInt frames, const char reason[], cons
   PetscLogDouble now;
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&now));
-  s->seconds = now - s->start;
+  s->seconds = now - s->clock.start;
   s->frames = frames;
   s->reason = failure ? failure : reason;
   SummaryCountBytes(s);

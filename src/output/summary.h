@@ -4,6 +4,13 @@
 #include "output/folder.h"
 #include "output/record.h"
 
+/* The clock of progress lines. */
+typedef struct {
+  PetscReal from, end;    /* simulated times at the start and of -time_end */
+  PetscLogDouble start;   /* wall time at the start */
+  PetscLogDouble printed; /* and at the last progress line */
+} ProgressClock;
+
 /* The caller fills in what is borrowed; else zero. */
 typedef struct {
   Folder *folder;         /* borrowed */
@@ -14,10 +21,18 @@ typedef struct {
   double bytes_h5;        /* size of run.h5, when the run ends */
   double bytes;           /* of run.h5, run.xmf, series.csv, vesicles.h5 and the checkpoints */
   PetscReal seconds;      /* wall time of the run, when it ends */
-  PetscReal from;         /* simulated time at the start */
-  PetscLogDouble start;   /* wall time at the start */
-  PetscLogDouble printed; /* and at the last progress line */
+  ProgressClock clock;
 } Summary;
+
+/* ProgressBegin - the run starts now, at the simulated time `from`. ProgressSay - as SummaryProgress. SummaryPrintOptions - the
+   options in force but those of solvers. SummaryPrintOrigin, SummaryPrintString - the members of summary.json that every
+   run ends with, from "ended" to the closing brace; a text between quotes. ProgressSay is collective, the others are
+   not. */
+PETSC_EXTERN ProgressClock ProgressBegin(PetscReal from, PetscReal end);
+PETSC_EXTERN PetscErrorCode ProgressSay(ProgressClock *clock, MPI_Comm comm, PetscInt step, PetscReal t, PetscBool force);
+PETSC_EXTERN PetscErrorCode SummaryPrintOptions(Scene scene, FILE *file);
+PETSC_EXTERN void SummaryPrintOrigin(FILE *file);
+PETSC_EXTERN void SummaryPrintString(FILE *file, const char text[]);
 
 /* SummaryBegin - the run starts now: write resolved.opts, every option in force, with which the run is repeated.
    SummaryProgress - print step, time, percent of -time_end and the time that is left, at most every few seconds unless

@@ -1,13 +1,13 @@
 #include "output/vesiclefile.h"
 
-static PetscErrorCode VesicleFileDescribe(Scheme s, H5File *f) {
+static PetscErrorCode VesicleFileDescribe(const void *none, H5File *f) {
   H5PutText(f, "about",
             "a row a step: columns of series.csv of each vesicle, [row, vesicle]; what is no number is empty there");
   return PETSC_SUCCESS;
 }
 
 PetscErrorCode VesicleFileOpen(AppendedFile *f, Folder *folder, Scheme s, PetscInt rows, const char restart[]) {
-  AppendedKind kind = {.name = "vesicles.h5", .entries = "rows", .scheme = s, .describe = VesicleFileDescribe};
+  AppendedKind kind = {.name = "vesicles.h5", .entries = "rows", .now = s->state.t, .describe = VesicleFileDescribe};
   const PetscInt vesicles = s->membrane->layout->bodies;
   PetscFunctionBeginUser;
   if (vesicles <= RECORD_FEW) PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,11 +8,11 @@
 #pragma once
 #include "output/appendedfile.h"
 
-/* Filled in by the caller: folder, scheme, number of tracers, file = -1; else zero. */
+/* Filled in by the caller: folder, print with its context, file = -1; else zero. */
 typedef struct {
   Folder *folder; /* borrowed */
-  Scheme scheme;  /* borrowed */
-  PetscInt tracers;
+  void (*print)(const void *context, FILE *file, PetscInt frame, PetscReal time); /* one frame, a grid of XDMF */
+  const void *context;
   int file;        /* rank 0, when open; else -1 */
   PetscInt frames; /* in the document */
   off_t last;      /* where the last frame begins */
@@ -22,6 +22,17 @@ typedef struct {
 /* XdmfWrite - bring the document up to run.h5, whose last frame is new: all frames at the first call, then the last
    one. Collective; stops with one line when a frame cannot be written, and leaves the document as it was. */
 PETSC_EXTERN PetscErrorCode XdmfWrite(Xdmf *xdmf, AppendedFile *frames);
+
+/* A list of numbers in run.h5 of frame after frame: n rows of `columns` columns from `column` on. */
+typedef struct {
+  const char *name;
+  int bytes; /* bytes of a number */
+  PetscInt frame, n, column, columns;
+  PetscInt width; /* columns of an entry; 0: an entry is a list */
+} XdmfSlab;
+
+/* XdmfPrintSlab - a slab as an XDMF item with the dimensions before, n, columns. Not collective. */
+PETSC_EXTERN void XdmfPrintSlab(FILE *file, const char before[], const XdmfSlab *slab);
 
 /* XdmfClose - close the file; whether all of it was written, TRUE on ranks other than 0. Not collective. */
 PETSC_EXTERN PetscBool XdmfClose(Xdmf *xdmf);
