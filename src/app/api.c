@@ -79,8 +79,9 @@ PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject 
 }
 
 PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt start[], PetscInt sizes[7]) {
-  const Grid g = s->fluid->grid;
   PetscFunctionBeginUser;
+  PetvesCheck(!s->space, s->scene->comm, "-dim 3: not from Python; allowed: 2, or petves run");
+  const Grid g = s->fluid->grid;
   *vesicles = s->layout->bodies;
   for (PetscInt v = 0; start && v <= s->layout->bodies; v++) start[v] = s->layout->start[v];
   sizes[0] = g->first;

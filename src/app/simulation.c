@@ -2,6 +2,7 @@
 #include "app/simulation.h"
 #include "baselines/baselines.h"
 #include "options/typed.h"
+#include "space/fromscene.h"
 #include <stdlib.h>
 
 static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
@@ -122,6 +123,11 @@ static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulatio
   PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
   scene = s->scene;
   PetscCall(SceneCheckUsed(scene));
+  if (scene->dim == DIM_SPACE) {
+    PetscCall(SpaceFromScene(scene, &s->space));
+    PetscCall(SceneCheckUnused(scene));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SceneReport(scene));
   PetscCall(FluidCreate(&scene->fluid, &s->fluid));
   PetscCall(CreateLayouts(comm, scene, s));
@@ -152,7 +158,8 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
   PetscCall(Build(comm, flow, ctx, s));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  if (!only_help) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
+  if (!only_help && s->space) PetscCall(SpaceOutputCreate(s->scene, s->space, &s->space_output));
+  if (!only_help && !s->space) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,8 +170,10 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
   PetscErrorCode error;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  *simulation = NULL;                /* the simulation is destroyed also when a file cannot be closed */
-  error = OutputDestroy(&s->output); /* reported when all else is freed */
+  *simulation = NULL; /* the simulation is destroyed also when a file cannot be closed */
+  error = s->space ? SpaceOutputDestroy(&s->space_output)
+                   : OutputDestroy(&s->output); /* reported when all else is freed */
+  PetscCall(SpaceDestroy(&s->space));
   for (int k = 0; k < 3; k++) PetscCall(PetscFree(s->gathered[k]));
   PetscCall(SchemeDestroy(&s->scheme));
   PetscCall(CouplingDestroy(&s->coupling));
@@ -182,27 +191,51 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
 PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   PetscCall(SceneView(s->scene, viewer));
-  PetscCall(SchemeView(s->scheme, viewer));
+  PetscCall(s->space ? KSPView(s->space->ksp, viewer) : SchemeView(s->scheme, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One step, to the time `until` at most, its row of series.csv and the files that are due. Adaptive steps end at the
-   times of frames. */
-static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failure) {
+/* The time, and how steps are chosen. */
+static PetscReal SimulationTime(Simulation s) {
+  return s->space ? s->space->state.t : s->scheme->state.t;
+}
+
+static const StepPolicy *SimulationPolicy(Simulation s) {
+  return s->space ? &s->space->setting.policy : &s->scheme->policy;
+}
+
+/* One step, to the time `until` at most, its row of series.csv and the files that are due; still: the largest normal
+   speed of a vesicle, by the last row of the record, which every rank has. Adaptive steps end at the times of frames.
+ */
+static PetscErrorCode StepInPlane(Simulation s, PetscReal until, const char **failure, PetscReal *still) {
   const StepReport *report = &s->scheme->report;
   const Record *r = &s->output->record;
-  const PetscReal tolerance = s->scene->time.steady_tol;
+  PetscFunctionBeginUser;
+  PetscCall(SchemeStep(s->scheme, s->scheme->policy.adaptive ? PetscMin(until, s->output->next) : until));
+  *failure = *report->failure ? report->failure : NULL;
+  if (!*failure) PetscCall(OutputStep(s->output));
+  for (PetscInt v = 0; v < r->vesicles; v++) *still = PetscMax(*still, r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED]);
+  if (!r->vesicles) *still = PETSC_MAX_REAL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StepInSpace(Simulation s, PetscReal until, const char **failure, PetscReal *still) {
+  PetscFunctionBeginUser;
+  PetscCall(SpaceStep(s->space, until));
+  *failure = *s->space->report.failure ? s->space->report.failure : NULL;
+  if (!*failure) PetscCall(SpaceOutputStep(s->space_output));
+  *still = s->space_output->record.last[SPACE_NORMAL_SPEED];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failure) {
   PetscLogDouble start, end;
+  PetscReal still = 0;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
-  PetscCall(SchemeStep(s->scheme, s->scheme->policy.adaptive ? PetscMin(until, s->output->next) : until));
-  *failure = *report->failure ? report->failure : NULL;
-  if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OutputStep(s->output));
-  s->steady = tolerance > 0 && r->vesicles; /* by the last row of the record, which every rank has */
-  for (PetscInt v = 0; v < r->vesicles && s->steady; v++)
-    s->steady = r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED] < tolerance;
+  PetscCall((s->space ? StepInSpace : StepInPlane)(s, until, failure, &still));
+  s->steady = !*failure && still < s->scene->time.steady_tol;
   PetscCall(PetscTime(&end));
   s->longest_step = PetscMax(s->longest_step, end - start);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -211,35 +244,34 @@ static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failu
 PetscErrorCode SimulationBegin(Simulation s) {
   PetscFunctionBeginUser;
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchemeStart(s->scheme));
+  PetscCall(s->space ? SpaceStart(s->space) : SchemeStart(s->scheme));
   s->begun = PETSC_TRUE;
   s->reason = "finished";
-  PetscCall(OutputBegin(s->output));
+  PetscCall(s->space ? SpaceOutputBegin(s->space_output) : OutputBegin(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
-  const PetscReal t = s->scheme->state.t, end = s->scene->time.end;
+  const PetscReal end = s->scene->time.end;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(s, StepFinished(&s->scheme->policy, t, end) ? PETSC_MAX_REAL : end, failure));
+  PetscCall(TakeStep(s, StepFinished(SimulationPolicy(s), SimulationTime(s), end) ? PETSC_MAX_REAL : end, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
-  const PetscReal t = s->scheme->state.t;
   const char *why = NULL;
   PetscFunctionBeginUser;
   *failure = NULL;
   *stepped = PETSC_FALSE;
   PetscCall(SimulationBegin(s));
-  const PetscReal reserve = 1 + 1.5 * s->output->checkpoint_seconds;
+  const PetscReal reserve = 1 + 1.5 * (s->space ? s->space_output->checkpoint_seconds : s->output->checkpoint_seconds);
   s->reason = s->steady ? "steady" : "finished";
-  if (s->steady || StepFinished(&s->scheme->policy, t, until)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->steady || StepFinished(SimulationPolicy(s), SimulationTime(s), until)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit, reserve + 1.5 * s->longest_step, &why));
   if (why) {
     s->reason = "stopped";
-    PetscCall(
-        PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", s->scheme->state.step, why));
+    PetscCall(PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n",
+                        s->space ? s->space->state.step : s->scheme->state.step, why));
   } else {
     PetscCall(TakeStep(s, until, failure));
     *stepped = PETSC_TRUE;
@@ -250,7 +282,7 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
 PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
-  PetscCall(OutputEnd(s->output, s->reason, failure));
+  PetscCall(s->space ? SpaceOutputEnd(s->space_output, s->reason, failure) : OutputEnd(s->output, s->reason, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,7 +295,8 @@ PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
   while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->time.end, &stepped, &failure));
   PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;
-  if (failure && !s->fluid->grid->rank)
-    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder.path);
+  const Folder *folder = s->space ? &s->space_output->folder : &s->output->folder;
+  if (failure && !folder->rank)
+    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, folder->path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

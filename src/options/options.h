@@ -80,8 +80,8 @@ PETSC_EXTERN PetscErrorCode OptionsDepend(const OptionTable *table, void *values
 PETSC_EXTERN PetscBool OptionDepends(const OptionTable *table, const void *values, const OptionDefault *dependent,
                                      char value[OPTION_MAX_NAME]);
 
-/* OptionMissing - what an option needs and is not there, for a message; NULL: nothing. Not collective. OptionsCheckUsed -
-   stop when the user gave one that needs something. Collective. */
+/* OptionMissing - what an option needs and is not there, for a message; NULL: nothing. Not collective. OptionsCheckUsed
+   - stop when the user gave one that needs something. Collective. */
 PETSC_EXTERN const char *OptionMissing(const OptionTable *table, const OptionRow *row, const void *values);
 PETSC_EXTERN PetscErrorCode OptionsCheckUsed(const OptionTable *table, const void *values);
 

@@ -87,8 +87,8 @@ const char *OptionMissing(const OptionTable *t, const OptionRow *row, const void
   const OptionNeed *need = row->need;
   const char *missing = t->missing ? t->missing(row, values) : NULL;
   if (missing || !need) return missing;
-  const PetscBool there =
-      need->met ? need->met(values) : need->any_of >> *(const PetscInt *)((const char *)values + need->offset) & 1;
+  const PetscBool there = need->met ? need->met(values)
+                                    : need->any_of >> *(const PetscInt *)((const char *)values + need->offset) & 1;
   return there ? NULL : need->what;
 }
 

@@ -297,8 +297,7 @@ static PetscErrorCode CheckpointWriteAll(void *context, H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointStore(Checkpoint *c, PetscInt step, PetscErrorCode (*write)(void *, H5File *),
-                               void *context) {
+PetscErrorCode CheckpointStore(Checkpoint *c, PetscInt step, PetscErrorCode (*write)(void *, H5File *), void *context) {
   char path[PETSC_MAX_PATH_LEN];
   H5File file;
   PetscBool done = PETSC_TRUE;

@@ -63,8 +63,9 @@ PETSC_EXTERN PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Sch
 PETSC_EXTERN PetscErrorCode CheckpointTracers(H5File *file, PetscBool write, Scheme scheme, Tracers *tracers);
 PETSC_EXTERN PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *numbers);
 
-/* RestartOpen - open the checkpoint that -restart names, whose bytes are those that its checksum is of, and whose options
-   fit the scene. RestartEntries - stop unless all entries so far could be read. Collective; stop with one line. */
+/* RestartOpen - open the checkpoint that -restart names, whose bytes are those that its checksum is of, and whose
+   options fit the scene. RestartEntries - stop unless all entries so far could be read. Collective; stop with one line.
+ */
 PETSC_EXTERN PetscErrorCode RestartOpen(Scene scene, H5File *file);
 PETSC_EXTERN PetscErrorCode RestartEntries(Scene scene, const H5File *file);
 

@@ -113,7 +113,8 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
                                 {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2, .unit = "length"},
                                 {"/tracers/points", tracers, 2, .unit = "length"},
                                 {"/tracers/wrapped", FramesAreWrapped(s) ? tracers : 0, 2, .unit = "length"}};
-  AppendedKind kind = {.name = "run.h5", .entries = "frames", .now = s->state.t, .context = s, .describe = FramesDescribe};
+  AppendedKind kind = {
+      .name = "run.h5", .entries = "frames", .now = s->state.t, .context = s, .describe = FramesDescribe};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
     if (all[k].rows) kind.series[kind.n++] = all[k];

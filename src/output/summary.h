@@ -13,23 +13,24 @@ typedef struct {
 
 /* The caller fills in what is borrowed; else zero. */
 typedef struct {
-  Folder *folder;         /* borrowed */
-  Scheme scheme;          /* borrowed */
-  const Record *record;   /* borrowed */
-  PetscInt frames;        /* in run.h5, when the run ends */
-  const char *reason;     /* why the run has ended: "finished", "steady", "stopped", or the failure */
-  double bytes_h5;        /* size of run.h5, when the run ends */
-  double bytes;           /* of run.h5, run.xmf, series.csv, vesicles.h5 and the checkpoints */
-  PetscReal seconds;      /* wall time of the run, when it ends */
+  Folder *folder;       /* borrowed */
+  Scheme scheme;        /* borrowed */
+  const Record *record; /* borrowed */
+  PetscInt frames;      /* in run.h5, when the run ends */
+  const char *reason;   /* why the run has ended: "finished", "steady", "stopped", or the failure */
+  double bytes_h5;      /* size of run.h5, when the run ends */
+  double bytes;         /* of run.h5, run.xmf, series.csv, vesicles.h5 and the checkpoints */
+  PetscReal seconds;    /* wall time of the run, when it ends */
   ProgressClock clock;
 } Summary;
 
-/* ProgressBegin - the run starts now, at the simulated time `from`. ProgressSay - as SummaryProgress. SummaryPrintOptions - the
-   options in force but those of solvers. SummaryPrintOrigin, SummaryPrintString - the members of summary.json that every
-   run ends with, from "ended" to the closing brace; a text between quotes. ProgressSay is collective, the others are
-   not. */
+/* ProgressBegin - the run starts now, at the simulated time `from`. ProgressSay - as SummaryProgress.
+   SummaryPrintOptions - the options in force but those of solvers. SummaryPrintOrigin, SummaryPrintString - the members
+   of summary.json that every run ends with, from "ended" to the closing brace; a text between quotes. ProgressSay is
+   collective, the others are not. */
 PETSC_EXTERN ProgressClock ProgressBegin(PetscReal from, PetscReal end);
-PETSC_EXTERN PetscErrorCode ProgressSay(ProgressClock *clock, MPI_Comm comm, PetscInt step, PetscReal t, PetscBool force);
+PETSC_EXTERN PetscErrorCode ProgressSay(ProgressClock *clock, MPI_Comm comm, PetscInt step, PetscReal t,
+                                        PetscBool force);
 PETSC_EXTERN PetscErrorCode SummaryPrintOptions(Scene scene, FILE *file);
 PETSC_EXTERN void SummaryPrintOrigin(FILE *file);
 PETSC_EXTERN void SummaryPrintString(FILE *file, const char text[]);

@@ -10,7 +10,7 @@
 
 /* Filled in by the caller: folder, print with its context, file = -1; else zero. */
 typedef struct {
-  Folder *folder; /* borrowed */
+  Folder *folder;                                                                 /* borrowed */
   void (*print)(const void *context, FILE *file, PetscInt frame, PetscReal time); /* one frame, a grid of XDMF */
   const void *context;
   int file;        /* rank 0, when open; else -1 */

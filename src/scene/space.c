@@ -3,22 +3,47 @@
 #include "scene/properties.h"
 
 /* Options of the plane that scenes in space have too. */
-static const char *const in_space[] = {
-    "-dim", "-flow_type", "-flow_rate", "-flow_chi", "-flow_ca", "-flow_peak_velocity", "-flow_velocity",
-    "-flow_half_width", "-flow_center_x", "-flow_center_y", "-fluid_viscosity", "-vesicle_count", "-vesicle_center",
-    "-vesicle_bending", "-vesicle_viscosity_ratio", "-scheme_type", "-scheme_order", "-time_step", "-time_end",
-    "-output_dir", "-output_overwrite", "-output_every", "-checkpoint_every", "-checkpoint_keep", "-restart",
-    "-time_wall_limit", "-view", "-allow_unused_options", NULL};
+static const char *const in_space[] = {"-dim",
+                                       "-flow_type",
+                                       "-flow_rate",
+                                       "-flow_chi",
+                                       "-flow_ca",
+                                       "-flow_peak_velocity",
+                                       "-flow_velocity",
+                                       "-flow_half_width",
+                                       "-flow_center_x",
+                                       "-flow_center_y",
+                                       "-fluid_viscosity",
+                                       "-vesicle_count",
+                                       "-vesicle_center",
+                                       "-vesicle_bending",
+                                       "-vesicle_viscosity_ratio",
+                                       "-scheme_type",
+                                       "-scheme_order",
+                                       "-time_step",
+                                       "-time_end",
+                                       "-output_dir",
+                                       "-output_overwrite",
+                                       "-output_every",
+                                       "-checkpoint_every",
+                                       "-checkpoint_keep",
+                                       "-restart",
+                                       "-time_steady_tol",
+                                       "-time_wall_limit",
+                                       "-view",
+                                       "-allow_unused_options",
+                                       NULL};
 
 /* What scenes in space have in place of options of the plane. */
-static const char *const instead[][2] = {{"-vesicle_area", "-dim 2; three dimensions have -vesicle_radius"},
-                                         {"-vesicle_reduced_area", "-dim 2; three dimensions have -vesicle_reduced_volume"},
-                                         {"-vesicle_semi_axes", "-dim 2; three dimensions have -vesicle_half_axes"},
-                                         {"-vesicle_shape", "-dim 2; three dimensions have -vesicle_spheroid"},
-                                         {"-vesicle_angle", "-dim 2; three dimensions have -vesicle_axis"},
-                                         {"-vesicle_markers", "-dim 2; three dimensions have -sphere_degree"},
-                                         {"-domain_cells", "-dim 2; three dimensions have no grid, see -sphere_degree"},
-                                         {"-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
+static const char *const instead[][2] = {
+    {"-vesicle_area", "-dim 2; three dimensions have -vesicle_radius"},
+    {"-vesicle_reduced_area", "-dim 2; three dimensions have -vesicle_reduced_volume"},
+    {"-vesicle_semi_axes", "-dim 2; three dimensions have -vesicle_half_axes"},
+    {"-vesicle_shape", "-dim 2; three dimensions have -vesicle_spheroid"},
+    {"-vesicle_angle", "-dim 2; three dimensions have -vesicle_axis"},
+    {"-vesicle_markers", "-dim 2; three dimensions have -sphere_degree"},
+    {"-domain_cells", "-dim 2; three dimensions have no grid, see -sphere_degree"},
+    {"-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
 
 const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
   const OptionNeed *need = row->need;
@@ -37,9 +62,13 @@ static PetscErrorCode CheckLists(Scene s) {
   const struct {
     const char *name;
     PetscInt n, each;
-  } lists[] = {{"-vesicle_radius", own->radius.n, 1},          {"-vesicle_reduced_volume", own->reduced_volume.n, 1},
-               {"-vesicle_half_axes", own->half_axes.n, 3},    {"-vesicle_axis", own->axis.n, 3},
-               {"-vesicle_bending", s->membrane.stiffness.n, 1}, {"-vesicle_viscosity_ratio", s->membrane.viscosity_ratio.n, 1}};
+  } lists[] = {{"-vesicle_radius", own->radius.n, 1},
+               {"-vesicle_reduced_volume", own->reduced_volume.n, 1},
+               {"-vesicle_center", s->vesicles.center.n, 3},
+               {"-vesicle_half_axes", own->half_axes.n, 3},
+               {"-vesicle_axis", own->axis.n, 3},
+               {"-vesicle_bending", s->membrane.stiffness.n, 1},
+               {"-vesicle_viscosity_ratio", s->membrane.viscosity_ratio.n, 1}};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
     PetscCall(SceneCheckList(s, lists[k].name, lists[k].n, lists[k].each, count, "vesicles", "a vesicle"));
@@ -63,26 +92,35 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   const PetscInt count = s->vesicles.count;
   PetscReal R0, relaxation;
   PetscFunctionBeginUser;
-  PetscCall(SceneCheckList(s, "-vesicle_center", SceneGiven(s, "-vesicle_center") || count > 1 ? s->vesicles.center.n : 3, 3, count, "vesicles", "a vesicle"));
   PetscCall(CheckLists(s));
   const PetscBool ratio = SceneHasContrast(s);
   const SceneRule rules[] = {
-      {FlowIsCustom(&s->flow), "-flow_type {-flow_type}: of the plane; allowed with -dim 3: quiescent|shear|poiseuille|extension|uniform|axial|tube"},
-      {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3, "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
-      {strcmp(s->scheme.type, "coupled") != 0, "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
-      {SceneGiven(s, "-vesicle_half_axes") && (SceneGiven(s, "-vesicle_radius") || SceneGiven(s, "-vesicle_reduced_volume")), "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both descriptions"},
+      {FlowIsCustom(&s->flow), "-flow_type {-flow_type}: of the plane; allowed with -dim 3: "
+                               "quiescent|shear|poiseuille|extension|uniform|axial|tube"},
+      {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3,
+       "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
+      {strcmp(s->scheme.type, "coupled") != 0,
+       "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
+      {SceneGiven(s, "-vesicle_half_axes") &&
+           (SceneGiven(s, "-vesicle_radius") || SceneGiven(s, "-vesicle_reduced_volume")),
+       "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both "
+       "descriptions"},
       {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number from 4 to 32"},
-      {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with -dim 3: 1, or one vesicle"},
+      {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
+                           "-dim 3: 1, or one vesicle"},
       {s->membrane.stiffness.v[0] == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
   PetscCall(REFUSE(s, rules));
   for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
     const PetscReal *axis = s->space.axis.v + 3 * v;
-    PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0, "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
+    PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
+                              "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
   Scales(s, &R0, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * relaxation;
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * relaxation * R0;
-  const PetscReal rate = s->flow.type == FLOW_AXIAL ? s->flow.rate : s->flow.type == FLOW_TUBE ? s->flow.peak / s->flow.half_width : FlowShearRate(&s->flow);
+  const PetscReal rate = s->flow.type == FLOW_AXIAL  ? s->flow.rate
+                         : s->flow.type == FLOW_TUBE ? s->flow.peak / s->flow.half_width
+                                                     : FlowShearRate(&s->flow);
   if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(PetscAbsReal(rate), relaxation);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,11 +130,14 @@ PetscErrorCode SceneViewSpace(Scene s, PetscViewer v) {
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
   PetscCall(PetscViewerASCIIPushTab(v));
-  PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow without bounds in three dimensions, nu = %g\n", (double)s->fluid.nu));
-  PetscCall(PetscViewerASCIIPrintf(v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " unknowns, spherical harmonics of degree %" PetscInt_FMT "\n",
-                                   s->vesicles.count, 4 * n, s->space.degree));
-  PetscCall(PetscViewerASCIIPrintf(v, "scheme: order %" PetscInt_FMT ", dt = %g to t = %g, labels at the rate %g\n", s->scheme.order,
-                                   (double)s->time.dt, (double)s->time.end, (double)s->space.label_rate));
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow without bounds in three dimensions, nu = %g\n",
+                                   (double)s->fluid.nu));
+  PetscCall(PetscViewerASCIIPrintf(
+      v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " unknowns, spherical harmonics of degree %" PetscInt_FMT "\n",
+      s->vesicles.count, 4 * n, s->space.degree));
+  PetscCall(PetscViewerASCIIPrintf(v, "scheme: order %" PetscInt_FMT ", dt = %g to t = %g, labels at the rate %g\n",
+                                   s->scheme.order, (double)s->time.dt, (double)s->time.end,
+                                   (double)s->space.label_rate));
   PetscCall(PetscViewerASCIIPopTab(v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

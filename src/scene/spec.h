@@ -80,12 +80,12 @@ typedef enum { DIM_PLANE, DIM_SPACE } Dimension;
 
 /* What only scenes in three dimensions have. */
 typedef struct {
-  PetscInt degree;                         /* of the spherical harmonics */
-  PetscInt newton;                         /* steps on the bending energy within a time step */
-  PetscReal label_rate;                    /* (1/time) */
-  PetscInt oblate;                         /* of -vesicle_spheroid: 0 prolate, 1 oblate */
-  RealList radius, reduced_volume;         /* of spheroids, one for all or one a vesicle */
-  RealList half_axes, axis;                /* three for all, or three a vesicle; half axes in place of radius */
+  PetscInt degree;                 /* of the spherical harmonics */
+  PetscInt newton;                 /* steps on the bending energy within a time step */
+  PetscReal label_rate;            /* (1/time) */
+  PetscInt oblate;                 /* of -vesicle_spheroid: 0 prolate, 1 oblate */
+  RealList radius, reduced_volume; /* of spheroids, one for all or one a vesicle */
+  RealList half_axes, axis;        /* three for all, or three a vesicle; half axes in place of radius */
 } SceneSpace;
 
 /* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */

@@ -260,6 +260,10 @@ static PetscBool IsBiconcave(const void *scene) {
   return ((Scene)scene)->vesicles.shape == SHAPE_BICONCAVE ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool IsSpace(const void *scene) {
+  return ((Scene)scene)->dim == DIM_SPACE ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscBool HasFormula(const void *scene) {
   return SceneGiven((Scene)scene, "-flow_u") || SceneGiven((Scene)scene, "-flow_v") ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -340,6 +344,8 @@ static void MiddleHeight(const void *scene, char value[OPTION_MAX_NAME]) {
 /* clang-format off */
 const OptionDefault scene_defaults[] = {
   {"-flow_type", HasFormula, "formula", NULL, "it is given by formulas", NULL},
+  {"-flow_velocity", IsSpace, "1,0,0", NULL, "three dimensions", NULL},
+  {"-vesicle_center", IsSpace, "0,0,0", NULL, "three dimensions", NULL},
   {"-flow_half_width", IsWalled, NULL, HalfHeight, "poiseuille, from wall to wall", "between walls in y: half their distance"},
   {"-flow_center_y", IsWalled, NULL, MiddleHeight, "poiseuille, from wall to wall", "poiseuille between walls in y: their middle"},
   {"-vesicle_reduced_area", IsBiconcave, "0.65", NULL, "the outline is biconcave", "biconcave: 0.35 to 0.9, %s when not given"},

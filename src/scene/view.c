@@ -162,6 +162,13 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
 PetscErrorCode SceneSayModel(Scene s) {
   char model[SCENE_MODEL], reynolds[64] = "";
   PetscFunctionBeginUser;
+  if (s->dim == DIM_SPACE) {
+    PetscCall(PetvesSay(s->comm,
+                        "petves: quasi-steady flow without bounds, three dimensions, degree %" PetscInt_FMT
+                        ", fixed steps of %g\n",
+                        s->space.degree, (double)s->time.dt));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   SceneModel(s, model);
   if (s->reynolds > 0) PetscCall(PetscSNPrintf(reynolds, sizeof(reynolds), ", Re = %.3g", (double)s->reynolds));
   PetscCall(PetvesSay(s->comm, "petves: %s%s, %s %g\n", model, s->reynolds >= 0 ? reynolds : ", Re not known",

@@ -12,7 +12,7 @@ static void FirstShape(Scene s, PetscInt v, PetscReal X[]) {
   for (int d = 0; d < 3; d++) {
     axes[d] = ListEntry(&own->half_axes, 3, v, d);
     axis[d] = ListEntry(&own->axis, 3, v, d);
-    center[d] = s->vesicles.center.n >= 3 ? ListEntry(&s->vesicles.center, 3, v, d) : 0;
+    center[d] = ListEntry(&s->vesicles.center, 3, v, d);
   }
   if (!SceneGiven(s, "-vesicle_half_axes")) {
     ShapeSpheroid(ListEntry(&own->reduced_volume, 1, v, 0), own->oblate ? PETSC_TRUE : PETSC_FALSE,
@@ -28,7 +28,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   const SpaceSetting setting = {.p = s->space.degree,
                                 .order = s->scheme.order,
                                 .newton = s->space.newton,
-                                .rtol = 1e-9,
+                                .rtol = 1e-8,
                                 .flow = SceneFlow3,
                                 .context = &s->flow,
                                 .policy = {.base = s->time.dt}};

@@ -4,6 +4,6 @@
 #include "scene/space.h"
 #include "space/space.h"
 
-/* SpaceFromScene - the space of a resolved scene, its vesicles at the start. Collective. Errors: the user's message where
-   vesicles overlap. */
+/* SpaceFromScene - the space of a resolved scene, its vesicles at the start. Collective. Errors: the user's message
+   where vesicles overlap. */
 PETSC_EXTERN PetscErrorCode SpaceFromScene(Scene scene, Space *space);

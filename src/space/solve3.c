@@ -6,8 +6,9 @@
 
 PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < s->own; v++)
+  for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(DenseProduct(PETSC_FALSE, s->size, 1, s->size, s->vesicle[v]->M, F + v * s->size, V + v * s->size));
+  if (s->cross) PetscCall(CrossLayerAdd(s->cross, F, V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -20,11 +21,11 @@ static PetscErrorCode MultSpace(Mat A, Vec X, Vec Y) {
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(Y, &y));
-  for (PetscInt v = 0; v < s->own; v++)
+  for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->F + v * s->size));
   PetscCall(SpaceMobility(s, s->F, s->V));
-  for (PetscInt k = 0; k < s->own * s->size; k++) s->V[k] = -s->V[k];
-  for (PetscInt v = 0; v < s->own; v++)
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->V[k] = -s->V[k];
+  for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(Vesicle3Rows(s->vesicle[v], x + 4 * v * s->count, s->V + v * s->size, y + 4 * v * s->count));
   PetscCall(VecRestoreArrayWrite(Y, &y));
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -39,7 +40,7 @@ static PetscErrorCode ApplyFactors(PC pc, Vec r, Vec z) {
   PetscCall(PCShellGetContext(pc, &s));
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &x));
-  for (PetscInt v = 0; v < s->own; v++)
+  for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(DenseSolve(4 * s->count, s->factor + v * each * s->count * s->count, s->pivot + 4 * v * s->count,
                          PETSC_FALSE, 1, x + 4 * v * s->count));
   PetscCall(VecRestoreArray(z, &x));
@@ -50,11 +51,13 @@ PetscErrorCode SpaceSolverCreate(Space s) {
   const PetscInt n = 4 * s->count;
   PC pc;
   PetscFunctionBeginUser;
-  PetscCall(MatCreateShell(s->comm, s->own * n, s->own * n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
+  PetscCall(
+      MatCreateShell(s->share.comm, s->share.own * n, s->share.own * n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))MultSpace));
   PetscCall(MatCreateVecs(s->A, &s->x, &s->b));
-  PetscCall(PetscMalloc2(s->own * n * n, &s->factor, s->own * n, &s->pivot));
-  PetscCall(KSPCreate(s->comm, &s->ksp));
+  PetscCall(PetscMalloc2(s->share.own * n * n, &s->factor, s->share.own * n, &s->pivot));
+  PetscCall(PetscMalloc2(s->share.own * s->size, &s->made.X, s->share.own * s->count, &s->made.sigma));
+  PetscCall(KSPCreate(s->share.comm, &s->ksp));
   PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
   PetscCall(KSPSetType(s->ksp, KSPFGMRES));
   PetscCall(KSPSetTolerances(s->ksp, s->setting.rtol, 0, PETSC_DEFAULT, 200));
@@ -77,24 +80,48 @@ PetscErrorCode SpaceSolverDestroy(Space s) {
   PetscCall(VecDestroy(&s->x));
   PetscCall(VecDestroy(&s->b));
   PetscCall(PetscFree2(s->factor, s->pivot));
+  PetscCall(PetscFree2(s->made.X, s->made.sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New factors where the old ones have cost as much; report.failure when one is singular. */
-static PetscErrorCode RenewFactors(Space s, PetscReal a0) {
+/* Factors of the vesicles where they are placed; report.failure when one is singular. */
+static PetscErrorCode MakeFactors(Space s) {
   const PetscInt n = 4 * s->count;
   int good = 1;
   PetscFunctionBeginUser;
-  if (!AgeIsOver(&s->age, a0, STEP_RATIO, RENEWAL * (PetscReal)s->count)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < s->own; v++) {
+  for (PetscInt v = 0; v < s->share.own; v++) {
     PetscBool factored;
     PetscCall(Vesicle3Matrix(s->vesicle[v], s->factor + v * n * n));
     PetscCall(DenseFactor(n, s->factor + v * n * n, s->pivot + v * n, &factored));
     if (!factored) good = 0;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
   if (!good) PetscCall(PetscStrncpy(s->report.failure, "the problem of a vesicle is singular", PETVES_MAX_MESSAGE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New factors where the old ones have cost as much. */
+static PetscErrorCode RenewFactors(Space s, PetscReal a0) {
+  PetscFunctionBeginUser;
+  if (!AgeIsOver(&s->age, a0, STEP_RATIO, RENEWAL * (PetscReal)s->count)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MakeFactors(s));
   AgeRenew(&s->age, a0);
+  s->made.a0 = a0;
+  PetscCall(PetscArraycpy(s->made.X, s->Xstar, s->share.own * s->size));
+  PetscCall(PetscArraycpy(s->made.sigma, s->state.sigma, s->share.own * s->count));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceRecall(Space s) {
+  PetscFunctionBeginUser;
+  if (s->made.a0 <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    const PetscReal *X = s->made.X + v * s->size;
+    PetscBool done;
+    PetscCall(Vesicle3Place(s->vesicle[v], X, s->made.sigma + v * s->count, &done));
+    PetscCall(Vesicle3Linearise(s->vesicle[v], s->made.a0, X, X, X));
+  }
+  PetscCall(MakeFactors(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,15 +131,15 @@ static PetscErrorCode RightHandSide(Space s) {
   PetscScalar *b;
   PetscReal *y;
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < s->own; v++)
+  for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(PetscArraycpy(s->F + v * s->size, s->vesicle[v]->known, s->size));
   PetscCall(SpaceMobility(s, s->F, s->V));
-  for (PetscInt k = 0; k < s->own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
   PetscCall(PetscMalloc1(n, &y));
   PetscCall(VecGetArrayWrite(s->b, &b));
-  for (PetscInt v = 0; v < s->own; v++) {
+  for (PetscInt v = 0; v < s->share.own; v++) {
     const PetscInt at = v * s->size;
-    const PetscReal *U = s->state.dt_last > 0 ? s->state.U + at : NULL;
+    const PetscReal *U = s->state.solved ? s->state.U + at : NULL;
     PetscCall(Vesicle3Target(s->vesicle[v], s->Xhat + at, s->Xstar + at, U, b + v * n));
     PetscCall(Vesicle3Rows(s->vesicle[v], NULL, s->V + at, y));
     for (PetscInt k = 0; k < n; k++) b[v * n + k] -= y[k];
@@ -127,24 +154,24 @@ static PetscErrorCode Velocities(Space s) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->x, &x));
-  for (PetscInt v = 0; v < s->own; v++) {
+  for (PetscInt v = 0; v < s->share.own; v++) {
     PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->F + v * s->size));
     for (PetscInt k = 0; k < s->size; k++) s->F[v * s->size + k] += s->vesicle[v]->known[k];
   }
   PetscCall(VecRestoreArrayRead(s->x, &x));
   PetscCall(SpaceMobility(s, s->F, s->V));
-  for (PetscInt k = 0; k < s->own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SpaceSolve(Space s) {
+PetscErrorCode SpaceSolve(Space s, PetscInt pass) {
   KSPConvergedReason why;
   PetscInt its;
   PetscReal residual, a0 = 0;
   PetscFunctionBeginUser;
-  if (s->own) a0 = s->vesicle[0]->a0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &a0, 1, MPIU_REAL, MPI_MAX, s->comm));
-  PetscCall(RenewFactors(s, a0));
+  if (s->share.own) a0 = s->vesicle[0]->a0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &a0, 1, MPIU_REAL, MPI_MAX, s->share.comm));
+  if (!pass) PetscCall(RenewFactors(s, a0));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RightHandSide(s));
   PetscCall(KSPSolve(s->ksp, s->b, s->x));

@@ -1,10 +1,12 @@
 #include "space/space.h"
 
-#define PARTS 7 /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
+#define STILL 1e-6 /* of a step: in which shapes stay, for the first velocities and tensions */
+#define PARTS 7    /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
 
 static PetscErrorCode StateAllocate(Space s, SpaceState *q) {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(s->own * s->size, &q->X, s->own * s->size, &q->U, s->own * s->count, &q->sigma));
+  PetscCall(
+      PetscCalloc3(s->share.own * s->size, &q->X, s->share.own * s->size, &q->U, s->share.own * s->count, &q->sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -23,23 +25,24 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   *out = s;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  s->comm = comm;
+  const PetscInt first = vesicles * rank / ranks;
+  s->share = (VesicleShare){
+      .comm = comm, .vesicles = vesicles, .first = first, .own = vesicles * (rank + 1) / ranks - first};
   s->setting = *setting;
-  s->vesicles = vesicles;
-  s->first = vesicles * rank / ranks;
-  s->own = vesicles * (rank + 1) / ranks - s->first;
   PetscCall(SphereCreate(setting->p, &s->sphere));
   s->count = s->sphere->count;
   s->size = 3 * s->count;
-  PetscCall(PetscCalloc1(s->own, &s->vesicle));
-  for (PetscInt v = 0; v < s->own; v++)
-    PetscCall(Vesicle3Create(s->sphere, &material[s->first + v], &s->vesicle[v]));
+  PetscCall(PetscCalloc1(s->share.own, &s->vesicle));
+  for (PetscInt v = 0; v < s->share.own; v++)
+    PetscCall(Vesicle3Create(s->sphere, &material[s->share.first + v], &s->vesicle[v]));
   PetscCall(StateAllocate(s, &s->state));
+  PetscCall(StateAllocate(s, &s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateAllocate(s, &s->old[j]));
-  const PetscInt n = s->own * s->size;
+  const PetscInt n = s->share.own * s->size;
   PetscCall(PetscMalloc6(n, &s->Xstar, n, &s->Xhat, n, &s->Y, n, &s->background, n, &s->F, n, &s->V));
-  PetscCall(PetscArraycpy(s->state.X, X + s->first * s->size, n));
+  PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
   s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(setting->order, 2), .guess = 2};
+  if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, &s->cross));
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,9 +52,11 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceSolverDestroy(s));
-  for (PetscInt v = 0; v < s->own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
+  PetscCall(CrossLayerDestroy(&s->cross));
+  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
   PetscCall(StateFree(&s->state));
+  PetscCall(StateFree(&s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateFree(&s->old[j]));
   PetscCall(PetscFree6(s->Xstar, s->Xhat, s->Y, s->background, s->F, s->V));
   PetscCall(SphereDestroy(&s->sphere));
@@ -72,18 +77,19 @@ static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
   int good = 1;
   PetscFunctionBeginUser;
   for (int j = 1; j < BDF_MOST; j++) X[j] = s->old[j - 1].X;
-  for (PetscInt k = 0; k < s->own * s->size; k++) {
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) {
     s->Xstar[k] = s->Xhat[k] = 0;
     for (PetscInt j = 0; j < b->order; j++) {
       s->Xstar[k] += b->star[j] * X[j][k];
       s->Xhat[k] += b->history[j] / b->a0 * X[j][k];
     }
   }
-  for (PetscInt v = 0; v < s->own; v++) {
+  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->Xstar));
+  for (PetscInt v = 0; v < s->share.own; v++) {
     const Vesicle3 vesicle = s->vesicle[v];
     PetscReal *u;
     PetscBool done;
-    PetscCall(Vesicle3Place(vesicle, s->Xstar + v * s->size, s->state.dt_last > 0 ? s->state.sigma + v * s->count : NULL, &done));
+    PetscCall(Vesicle3Place(vesicle, s->Xstar + v * s->size, s->state.sigma + v * s->count, &done));
     if (!done) good = 0;
     PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
     s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u);
@@ -91,20 +97,26 @@ static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
     PetscCall(Vesicle3Velocity(vesicle, s->background + v * s->size));
     PetscCall(PetscFree(u));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->comm));
-  if (!good) PetscCall(PetscStrncpy(s->report.failure, "the double layer of a vesicle is singular", PETVES_MAX_MESSAGE));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
+  if (!good)
+    PetscCall(PetscStrncpy(s->report.failure, "the double layer of a vesicle is singular", PETVES_MAX_MESSAGE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First guess of (Q, sigma): Q that leads to X*, the last tension. */
-static PetscErrorCode Guess(Space s, PetscReal a0) {
+/* First guess of (Q, sigma): Q that leads to X*, the tension of the last states extrapolated. */
+static PetscErrorCode Guess(Space s, const BDF *b) {
+  const PetscReal *sigma[BDF_MOST] = {s->state.sigma};
   PetscScalar *x;
   PetscFunctionBeginUser;
+  for (int j = 1; j < BDF_MOST; j++) sigma[j] = s->old[j - 1].sigma;
   PetscCall(VecGetArrayWrite(s->x, &x));
-  for (PetscInt v = 0; v < s->own; v++) {
+  for (PetscInt v = 0; v < s->share.own; v++) {
     PetscScalar *Q = x + 4 * v * s->count;
-    for (PetscInt k = 0; k < s->size; k++) Q[k] = a0 * (s->Xstar[v * s->size + k] - s->Xhat[v * s->size + k]);
-    PetscCall(PetscArraycpy(Q + s->size, s->state.sigma + v * s->count, s->count));
+    for (PetscInt k = 0; k < s->size; k++) Q[k] = b->a0 * (s->Xstar[v * s->size + k] - s->Xhat[v * s->size + k]);
+    for (PetscInt k = 0; k < s->count; k++) {
+      Q[s->size + k] = 0;
+      for (PetscInt j = 0; j < b->order; j++) Q[s->size + k] += b->star[j] * sigma[j][v * s->count + k];
+    }
   }
   PetscCall(VecRestoreArrayWrite(s->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -116,7 +128,7 @@ static PetscErrorCode Iterate(Space s, PetscReal a0, PetscReal *moved) {
   PetscFunctionBeginUser;
   *moved = 0;
   PetscCall(VecGetArrayRead(s->x, &x));
-  for (PetscInt v = 0; v < s->own; v++) {
+  for (PetscInt v = 0; v < s->share.own; v++) {
     const PetscReal R = PetscCbrtReal(0.75 / PETSC_PI * s->vesicle[v]->setting.volume);
     PetscReal sum = 0;
     for (PetscInt k = 0; k < s->size; k++) {
@@ -128,7 +140,7 @@ static PetscErrorCode Iterate(Space s, PetscReal a0, PetscReal *moved) {
     *moved = PetscMax(*moved, PetscSqrtReal(sum / (4 * PETSC_PI)) / R);
   }
   PetscCall(VecRestoreArrayRead(s->x, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moved, 1, MPIU_REAL, MPI_MAX, s->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moved, 1, MPIU_REAL, MPI_MAX, s->share.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,26 +151,39 @@ static PetscErrorCode Attempt(Space s, PetscReal dt) {
   PetscFunctionBeginUser;
   PetscCall(Place(s, &b, s->state.t + dt));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Guess(s, b.a0));
-  PetscCall(PetscArraycpy(s->Y, s->Xstar, s->own * s->size));
+  PetscCall(Guess(s, &b));
+  PetscCall(PetscArraycpy(s->Y, s->Xstar, s->share.own * s->size));
   for (PetscInt pass = 0; pass < s->setting.newton && !*s->report.failure; pass++) {
-    for (PetscInt v = 0; v < s->own; v++) {
+    for (PetscInt v = 0; v < s->share.own; v++) {
       const PetscInt at = v * s->size;
       PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->Xhat + at, s->Xstar + at, s->Y + at));
     }
-    PetscCall(SpaceSolve(s));
+    PetscCall(SpaceSolve(s, pass));
     if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Iterate(s, b.a0, &moved));
     s->report.estimate = pass ? s->report.estimate : moved;
   }
-  if (PetscIsInfOrNanReal(moved)) PetscCall(PetscStrncpy(s->report.failure, "the shape is not finite", PETVES_MAX_MESSAGE));
+  if (PetscIsInfOrNanReal(moved))
+    PetscCall(PetscStrncpy(s->report.failure, "the shape is not finite", PETVES_MAX_MESSAGE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* U and sigma of the attempt become the state's. */
+static PetscErrorCode TakeSolution(Space s) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(s->state.U, s->V, s->share.own * s->size));
+  PetscCall(VecGetArrayRead(s->x, &x));
+  for (PetscInt v = 0; v < s->share.own; v++)
+    PetscCall(PetscArraycpy(s->state.sigma + v * s->count, x + 4 * v * s->count + s->size, s->count));
+  PetscCall(VecRestoreArrayRead(s->x, &x));
+  s->state.solved = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The attempt becomes the state. */
 static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
   const SpaceState last = s->old[BDF_MOST - 2];
-  const PetscScalar *x;
   PetscFunctionBeginUser;
   for (int j = BDF_MOST - 2; j > 0; j--) s->old[j] = s->old[j - 1];
   s->old[0] = s->state;
@@ -167,30 +192,78 @@ static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
   s->state.dt_last = dt;
   s->state.step = s->old[0].step;
   s->past = PetscMin(s->past + 1, BDF_MOST - 1);
-  PetscCall(PetscArraycpy(s->state.U, s->V, s->own * s->size));
-  PetscCall(PetscArraycpy(s->state.X, s->Y, s->own * s->size));
-  PetscCall(VecGetArrayRead(s->x, &x));
-  for (PetscInt v = 0; v < s->own; v++) {
-    PetscCall(PetscArraycpy(s->state.sigma + v * s->count, x + 4 * v * s->count + s->size, s->count));
-    PetscCall(Vesicle3KeepVolume(s->vesicle[v], s->state.X + v * s->size));
+  PetscCall(PetscArraycpy(s->state.X, s->Y, s->share.own * s->size));
+  PetscCall(TakeSolution(s));
+  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3KeepVolume(s->vesicle[v], s->state.X + v * s->size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceStart(Space s) {
+  PetscFunctionBeginUser;
+  if (s->state.step || s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PhaseBegin(PHASE_STEP));
+  PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
+  PetscCall(Attempt(s, STILL * s->setting.policy.base));
+  if (!*s->report.failure) PetscCall(TakeSolution(s));
+  s->age = AgeNone(); /* factors of so small a step serve no other */
+  s->made.a0 = 0;
+  PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
+  PetscCall(PhaseEnd());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyState(Space s, const SpaceState *from, SpaceState *to) {
+  SpaceState copy = *from;
+  PetscFunctionBeginUser;
+  copy.X = to->X;
+  copy.U = to->U;
+  copy.sigma = to->sigma;
+  PetscCall(PetscArraycpy(copy.X, from->X, s->share.own * s->size));
+  PetscCall(PetscArraycpy(copy.U, from->U, s->share.own * s->size));
+  PetscCall(PetscArraycpy(copy.sigma, from->sigma, s->share.own * s->count));
+  *to = copy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step in its parts. */
+static PetscErrorCode StepInParts(Space s, PetscReal dt, PetscReal end) {
+  const PetscInt parts = s->state.step ? 1 : PARTS;
+  const PetscReal t = s->state.t;
+  PetscReal done = 0;
+  PetscFunctionBeginUser;
+  if (parts > 1) PetscCall(CopyState(s, &s->state, &s->start));
+  for (PetscInt part = 0; part < parts; part++) {
+    const PetscReal share = parts == 1 ? dt : dt / (PetscReal)(1 << (part ? parts - part : parts - 1));
+    PetscCall(Attempt(s, share));
+    if (*s->report.failure && part) {
+      PetscCall(CopyState(s, &s->start, &s->state));
+      s->past = 0;
+    }
+    if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
+    done += share;
+    PetscCall(Accept(s, share, part == parts - 1 ? end : t + done));
   }
-  PetscCall(VecRestoreArrayRead(s->x, &x));
+  s->state.step++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpaceStep(Space s, PetscReal until) {
   const PetscReal t = s->state.t, dt = StepFixed(&s->setting.policy, t, until);
-  const PetscInt parts = s->state.step ? 1 : PARTS;
+  PetscLogDouble start, end;
   PetscFunctionBeginUser;
+  PetscCall(PetscTime(&start));
+  PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
-  PetscReal done = 0;
-  for (PetscInt part = 0; part < parts; part++) {
-    const PetscReal share = parts == 1 ? dt : dt / (PetscReal)(1 << (part ? parts - part : parts - 1));
-    PetscCall(Attempt(s, share));
-    if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-    done += share;
-    PetscCall(Accept(s, share, part == parts - 1 ? StepTime(&s->setting.policy, t, dt, until) : t + done));
+  s->report.dt = dt;
+  PetscCall(StepInParts(s, dt, StepTime(&s->setting.policy, t, dt, until)));
+  if (*s->report.failure) {
+    const size_t used = strlen(s->report.failure);
+    PetscCall(PetscSNPrintf(s->report.failure + used, PETVES_MAX_MESSAGE - used,
+                            " in step %" PetscInt_FMT " at time %g; try a smaller -time_step or -bending_newton 2",
+                            s->state.step + 1, (double)t));
   }
-  s->state.step++;
+  PetscCall(PhaseEnd());
+  PetscCall(PetscTime(&end));
+  s->report.seconds = end - start;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

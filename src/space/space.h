@@ -8,6 +8,7 @@
 #include "precondition/age.h"
 #include "scheme/bdf.h"
 #include "scheme/stepcontrol.h"
+#include "space/crosslayer.h"
 #include "space/vesicle3.h"
 
 /* A background flow: u[3][n] at the points X[3][n] at time t. */
@@ -26,39 +27,49 @@ typedef struct {
 
 /* What the last step did. */
 typedef struct {
-  PetscInt its;       /* of GMRES */
-  PetscReal estimate; /* largest root mean square of X - X* of a vesicle, over its radius */
-  PetscReal stretch;  /* largest |A U| but for the area target (length^2/time): what the solver left */
+  PetscReal dt, seconds;
+  PetscInt its;                     /* of GMRES */
+  PetscReal estimate;               /* largest root mean square of X - X* of a vesicle, over its radius */
+  PetscReal stretch;                /* largest |A U| but for the area target (length^2/time): what the solver left */
   char failure[PETVES_MAX_MESSAGE]; /* why the step was not taken; empty: it was taken */
 } SpaceReport;
 
 /* States are arrays of the own vesicles. */
 typedef struct {
   PetscInt step;
-  PetscReal t, dt_last;         /* dt_last: the step that led to it; 0 at the start */
-  PetscReal *X, *U;             /* [own][3 count] */
-  PetscReal *sigma;             /* [own][count] */
+  PetscReal t, dt_last; /* dt_last: the step, or its last part, that led to it; 0 at the start */
+  PetscBool solved;     /* U and sigma are those of a solve */
+  PetscReal *X, *U;     /* [own][3 count] */
+  PetscReal *sigma;     /* [own][count] */
 } SpaceState;
+
+/* What the factors were made for, of the own vesicles: X* [own][3 count], the tension that pulled [own][count]. */
+typedef struct {
+  PetscReal a0; /* 0: none */
+  PetscReal *X, *sigma;
+} SpaceFactors;
 
 typedef struct _p_Space *Space;
 struct _p_Space {
-  MPI_Comm comm;
+  VesicleShare share;
   SpaceSetting setting;
   Sphere sphere;
-  PetscInt vesicles, first, own; /* number of all, first own one, number of own ones */
-  PetscInt count, size;          /* harmonics, 3 count */
-  Vesicle3 *vesicle;             /* [own] */
+  PetscInt count, size; /* harmonics, 3 count */
+  Vesicle3 *vesicle;    /* [own] */
+  CrossLayer cross;     /* NULL: one vesicle */
   SpaceState state, old[BDF_MOST - 1];
-  PetscInt past; /* states before the present one that are known */
+  SpaceState start; /* the first state, which a failed first step goes back to */
+  PetscInt past;    /* states before the present one that are known */
   StepPlan plan;
   SpaceReport report;
   PetscReal *Xstar, *Xhat, *Y, *background, *F, *V; /* [own][3 count]; background: u_inf at X* */
   Mat A;
   KSP ksp;
-  Vec x, b;                /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
-  PetscReal *factor;       /* [own][4 count][4 count] */
-  PetscBLASInt *pivot;     /* [own][4 count] */
-  Age age;                 /* of the factors */
+  Vec x, b;            /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
+  PetscReal *factor;   /* [own][4 count][4 count] */
+  PetscBLASInt *pivot; /* [own][4 count] */
+  Age age;             /* of the factors */
+  SpaceFactors made;
 };
 
 /* SpaceCreate - vesicles of the shapes X[vesicles][3 count] with their materials [vesicles] at time 0. Collective.
@@ -67,15 +78,24 @@ PETSC_EXTERN PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setti
                                         const Vesicle3Setting material[], const PetscReal X[], Space *space);
 PETSC_EXTERN PetscErrorCode SpaceDestroy(Space *space);
 
+/* SpaceStart - solve for the velocities and tensions of the first shapes, which stay. Nothing happens after a step, and
+   where the solve fails, as the first step will say why. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceStart(Space space);
+
 /* SpaceStep - one time step, to the time `until` at most; the first one in parts that grow from 1/64 of it. When
    report.failure is not empty the step was not taken, and the state is the one before. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceStep(Space space, PetscReal until);
 
-/* SpaceMobility - V[own][3 count] = M F of the single layers of all vesicles where they have been placed. Collective. */
+/* SpaceRecall - the factors of a run that goes on, made again for what they were made for, space->made. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
+
+/* SpaceMobility - V[own][3 count] = M F of the single layers of all vesicles where they have been placed. Collective.
+ */
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
 
-/* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as the
-   first guess, and set V to the vesicles' velocities; report.failure says so when it fails. Collective. */
+/* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as
+   the first guess, in one of the Newton steps of a time step, of which the first may make new factors, and set V to the
+   vesicles' velocities; report.failure says so when it fails. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceSolverCreate(Space space);
 PETSC_EXTERN PetscErrorCode SpaceSolverDestroy(Space space);
-PETSC_EXTERN PetscErrorCode SpaceSolve(Space space);
+PETSC_EXTERN PetscErrorCode SpaceSolve(Space space, PetscInt pass);

@@ -69,10 +69,7 @@ PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscRea
     }
   }
   PetscCall(PetscFree2(N, A));
-  if (sigma)
-    PetscCall(SurfacePull(v->at, sigma, v->pull));
-  else
-    PetscCall(PetscArrayzero(v->pull, size * size));
+  PetscCall(SurfacePull(v->at, sigma, v->pull));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

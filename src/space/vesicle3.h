@@ -1,18 +1,18 @@
-/* One vesicle in three dimensions within a step: its part of the coupled problem, as dense matrices between coefficients
-   (docs/space.md).
+/* One vesicle in three dimensions within a step: its part of the coupled problem, as dense matrices between
+   coefficients (docs/space.md).
 
-   Unknowns are x = (Q, sigma): Q[3 count] the velocity of the labels, X = Xhat + Q/a0, and the tension sigma[count]. With
-   X* the extrapolated shape, where everything stands, Y the shape about which bending is linearised (X*, or the iterate
-   of a second Newton step), g and K_b the gradient and Gauss-Newton matrix of the bending energy there, K_s the pull of
-   the last tension, and A the area rows,
+   Unknowns are x = (Q, sigma): Q[3 count] the velocity of the labels, X = Xhat + Q/a0, and the tension sigma[count].
+   With X* the extrapolated shape, where everything stands, Y the shape about which bending is linearised (X*, or the
+   iterate of a second Newton step), g and K_b the gradient and Gauss-Newton matrix of the bending energy there, K_s the
+   pull of the last tension, and A the area rows,
 
        F = known + C x,   C = [(kappa K_b + K_s)/a0, A^T],   known = kappa g + kappa K_b (Xhat - Y) + K_s (Xhat - X*),
        U = u_inf - M F,                                      M the mobility of all vesicles,
        Q + (gamma/a0) P_t Lambda Q - P_n U = P_t rigid - gamma P_t Lambda Xhat,      A U = r,
 
-   F the membrane's resistance, minus its force on the fluid; P_n = n n., P_t = 1 - P_n. Labels follow the normal motion;
-   tangentially they go with the rigid part of the last normal velocity, and Lambda = (l/p)^4 draws them to a clean
-   spectrum at the rate gamma. r is zero but for the target of the whole area. */
+   F the membrane's resistance, minus its force on the fluid; P_n = n n., P_t = 1 - P_n. Labels follow the normal
+   motion; tangentially they go with the rigid part of the last normal velocity, and Lambda = (l/p)^4 draws them to a
+   clean spectrum at the rate gamma. r is zero but for the target of the whole area. */
 #pragma once
 #include "sphere/surface.h"
 
@@ -46,7 +46,7 @@ struct _p_Vesicle3 {
 PETSC_EXTERN PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, Vesicle3 *vesicle);
 PETSC_EXTERN PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle);
 
-/* Vesicle3Place - surface, mobility, rows and pull at X*[size]; sigma[count]: the last tension, NULL: none yet. done:
+/* Vesicle3Place - surface, mobility, rows and pull at X*[size]; sigma[count]: the last tension. done:
    the mobility could be made. Vesicle3Linearise - columns and known about Y[size], for a0 and Xhat[size]. Not
    collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Place(Vesicle3 vesicle, const PetscReal Xstar[], const PetscReal sigma[],
@@ -55,19 +55,19 @@ PETSC_EXTERN PetscErrorCode Vesicle3Linearise(Vesicle3 vesicle, PetscReal a0, co
                                               const PetscReal Xstar[], const PetscReal Y[]);
 
 /* Vesicle3Force - F[size] = C x, x[4 count]. Vesicle3Velocity - U[size] becomes that of a membrane with this ratio of
-   viscosities from what equal ones would make, U := inverse U. Vesicle3Rows - y[4 count] = L U + what the rows have of x
-   alone (NULL: nothing). Not collective. */
+   viscosities from what equal ones would make, U := inverse U. Vesicle3Rows - y[4 count] = L U + what the rows have of
+   x alone (NULL: nothing). Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Force(Vesicle3 vesicle, const PetscReal x[], PetscReal F[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Velocity(Vesicle3 vesicle, PetscReal U[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Rows(Vesicle3 vesicle, const PetscReal x[], const PetscReal U[], PetscReal y[]);
 
-/* Vesicle3Target - b[4 count], the right-hand sides, without those of u_inf: the labels' rigid part by the last velocity
-   U[size] (NULL: none), and the target of the area. Not collective. */
+/* Vesicle3Target - b[4 count], the right-hand sides, without those of u_inf: the labels' rigid part by the last
+   velocity U[size] (NULL: none), and the target of the area. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Target(Vesicle3 vesicle, const PetscReal Xhat[], const PetscReal Xstar[],
                                            const PetscReal U[], PetscReal b[]);
 
-/* Vesicle3Matrix - B[4 count][4 count], the vesicle's own part of the problem: what y = Vesicle3Rows makes of x by U = -M
-   C x, with a small multiple of the identity in the tension's block. Not collective. */
+/* Vesicle3Matrix - B[4 count][4 count], the vesicle's own part of the problem: what y = Vesicle3Rows makes of x by U =
+   -M C x, with a small multiple of the identity in the tension's block. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Matrix(Vesicle3 vesicle, PetscReal B[]);
 
 /* Vesicle3KeepVolume - shift X[size] evenly along its normals until it has its volume; `at` is used. Not collective. */

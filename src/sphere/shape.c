@@ -23,8 +23,9 @@ void ShapeSpheroid(PetscReal v, PetscBool oblate, PetscReal R, PetscReal *along,
 
 void ShapeAlign(PetscInt count, const PetscReal axis[3], const PetscReal center[3], PetscReal c[]) {
   const PetscReal length = PetscSqrtReal(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-  PetscReal h[3] = {1 + axis[0] / length, axis[1] / length, axis[2] / length}, h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
-  if (h2 < 1e-12) h[1] = h2 = 1; /* along -x: half a turn about y */
+  PetscReal h[3] = {1 + axis[0] / length, axis[1] / length, axis[2] / length},
+            h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+  if (h2 < 1e-12) h[1] = h2 = 1;         /* along -x: half a turn about y */
   for (PetscInt k = 0; k < count; k++) { /* half a turn about the middle h of x and the axis */
     PetscReal x[3] = {c[k], c[count + k], c[2 * count + k]};
     const PetscReal s = 2 * (h[0] * x[0] + h[1] * x[1] + h[2] * x[2]) / h2;

@@ -6,8 +6,8 @@
    6 sqrt(pi) V/A^(3/2), or of an oblate one, with the volume 4 pi R^3/3; v = 1: R, R. Not collective. */
 PETSC_EXTERN void ShapeSpheroid(PetscReal v, PetscBool oblate, PetscReal R, PetscReal *along, PetscReal *across);
 
-/* ShapeAlign - turn c[3][count] so that what was along x is along `axis`, any length, and move it by center (NULL: not).
-   Not collective. */
+/* ShapeAlign - turn c[3][count] so that what was along x is along `axis`, any length, and move it by center (NULL:
+   not). Not collective. */
 PETSC_EXTERN void ShapeAlign(PetscInt count, const PetscReal axis[3], const PetscReal center[3], PetscReal c[]);
 
 /* Moments of the volume, about its middle: those of the ellipsoid with the same second moments. */
@@ -17,7 +17,7 @@ typedef struct {
   PetscReal direction[3][3]; /* unit vectors along them */
 } ShapeMoments;
 
-/* ShapeMeasure - where the surface has been placed. ShapeTail - of c[3][count]: the root mean square of the coefficients
-   above three quarters of the degree over that of all but the mean. Not collective. */
+/* ShapeMeasure - where the surface has been placed. ShapeTail - of c[3][count]: the root mean square of the
+   coefficients above three quarters of the degree over that of all but the mean. Not collective. */
 PETSC_EXTERN PetscErrorCode ShapeMeasure(Surface surface, ShapeMoments *moments);
 PETSC_EXTERN PetscReal ShapeTail(PetscInt p, const PetscReal c[]);
