@@ -1,82 +1,54 @@
 /* Checkpoints of runs in three dimensions: the states as coefficients, and what the factors were made for. */
 #include "output/spaceoutput.h"
 
-/* Write or read the numbers of all vesicles [vesicles][each]. */
-static PetscErrorCode MoveVesicles(Space s, H5File *file, PetscBool write, const char group[], const char name[],
-                                   PetscInt each, PetscReal own[]) {
-  PetscReal *all;
-  char path[64];
-  PetscFunctionBeginUser;
-  (void)snprintf(path, sizeof(path), "%s/vesicle/%s", group, name);
-  PetscCall(PetscCalloc1(s->share.vesicles * each, &all));
-  if (write) PetscCall(ShareGather(&s->share, each, own, all));
-  PetscCall(CheckpointEntry(file, write, path, s->share.vesicles, each, all));
-  if (!write) PetscCall(ShareScatter(&s->share, each, all, own));
-  for (PetscInt k = 0; k < s->share.vesicles * each && !file->rank; k++)
-    if (PetscIsInfOrNanReal(all[k])) file->failed = PETSC_TRUE;
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MoveState(Space s, H5File *file, PetscBool write, PetscInt j) {
-  static const char *const groups[] = {"", "/previous", "/previous_1"};
-  SpaceState *q = j ? &s->old[j - 1] : &s->state;
-  PetscFunctionBeginUser;
-  PetscCall(MoveVesicles(s, file, write, groups[j], "shape", s->size, q->X));
-  PetscCall(MoveVesicles(s, file, write, groups[j], "velocity", s->size, q->U));
-  PetscCall(MoveVesicles(s, file, write, groups[j], "tension", s->count, q->sigma));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whole numbers and times; areas and volumes of the first shapes. */
+/* Write or read whole numbers and times; a run has had those that are read. */
 static PetscErrorCode MoveNumbers(SpaceOutput o, H5File *file, PetscBool write) {
-  const Space s = o->space;
-  PetscInt whole[] = {s->state.step, s->past, o->scheduled, o->record.its, s->state.solved};
-  PetscReal real[] = {s->state.t, s->state.dt_last, s->old[0].dt_last, s->old[1].dt_last, s->made.a0}, age[AGE_MEMORY];
-  PetscReal *size;
+  SpaceNumbers n = SpaceGetNumbers(o->space);
+  PetscInt whole[] = {n.step, n.past, n.solved, o->scheduled, o->record.its};
+  PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
+  const PetscInt reals = 2 + BDF_MOST + AGE_MEMORY;
   PetscFunctionBeginUser;
-  AgeGetMemory(&s->age, age);
-  PetscCall(PetscMalloc1(2 * s->share.own, &size));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    size[2 * v] = s->vesicle[v]->setting.area;
-    size[2 * v + 1] = s->vesicle[v]->setting.volume;
-  }
+  PetscCall(PetscArraycpy(real + 2, n.dt_last, BDF_MOST));
+  PetscCall(PetscArraycpy(real + 2 + BDF_MOST, n.age, AGE_MEMORY));
   if (write) {
     H5Put(file, "numbers", H5_INT, 5, whole);
-    H5Put(file, "times", H5_REAL, 5, real);
-    H5Put(file, "age", H5_REAL, AGE_MEMORY, age);
-  } else {
-    PetscCall(H5Get(file, "numbers", H5_INT, 5, whole));
-    PetscCall(H5Get(file, "times", H5_REAL, 5, real));
-    PetscCall(H5Get(file, "age", H5_REAL, AGE_MEMORY, age));
+    H5Put(file, "times", H5_REAL, reals, real);
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(MoveVesicles(s, file, write, "", "size", 2, size));
+  PetscCall(H5Get(file, "numbers", H5_INT, 5, whole));
+  PetscCall(H5Get(file, "times", H5_REAL, reals, real));
+  PetscBool fits = whole[0] >= 0 && whole[1] >= 0 && whole[1] < BDF_MOST && whole[3] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = 0; k < reals; k++)
+    if (PetscIsInfOrNanReal(real[k])) fits = PETSC_FALSE;
+  if (!fits && !file->rank) file->failed = PETSC_TRUE;
   PetscCall(RestartEntries(o->scene, file));
-  for (PetscInt v = 0; v < s->share.own && !write; v++) {
-    s->vesicle[v]->setting.area = size[2 * v];
-    s->vesicle[v]->setting.volume = size[2 * v + 1];
-  }
-  PetscCall(PetscFree(size));
-  s->state.step = whole[0];
-  s->past = PetscClipInterval(whole[1], 0, BDF_MOST - 1);
-  o->scheduled = whole[2];
-  o->record.its = whole[3];
-  s->state.solved = whole[4] ? PETSC_TRUE : PETSC_FALSE;
-  s->state.t = real[0];
-  s->state.dt_last = real[1];
-  for (int j = 0; j < BDF_MOST - 1; j++) s->old[j].dt_last = real[2 + j];
-  s->made.a0 = real[4];
-  s->age = AgeSetMemory(age);
+  n = (SpaceNumbers){.step = whole[0], .past = whole[1], .solved = whole[2], .t = real[0], .made = real[1]};
+  PetscCall(PetscArraycpy(n.dt_last, real + 2, BDF_MOST));
+  PetscCall(PetscArraycpy(n.age, real + 2 + BDF_MOST, AGE_MEMORY));
+  SpaceSetNumbers(o->space, &n);
+  o->scheduled = whole[3];
+  o->record.its = whole[4];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Write or read the numbers and the arrays [vesicles][each] of all ranks. */
 static PetscErrorCode MoveAll(SpaceOutput o, H5File *file, PetscBool write) {
-  const Space s = o->space;
+  const VesicleShare *share = &o->space->share;
+  SpaceArray array[SPACE_ARRAYS];
   PetscFunctionBeginUser;
   PetscCall(MoveNumbers(o, file, write));
-  for (PetscInt j = 0; j <= s->past; j++) PetscCall(MoveState(s, file, write, j));
-  if (s->made.a0 > 0) PetscCall(MoveVesicles(s, file, write, "/solver", "shape", s->size, s->made.X));
-  if (s->made.a0 > 0) PetscCall(MoveVesicles(s, file, write, "/solver", "tension", s->count, s->made.sigma));
+  const PetscInt arrays = SpaceArrays(o->space, array);
+  for (PetscInt k = 0; k < arrays; k++) {
+    const PetscInt n = share->vesicles * array[k].each;
+    PetscReal *all;
+    PetscCall(PetscCalloc1(n, &all));
+    if (write) PetscCall(ShareGather(share, array[k].each, array[k].own, all));
+    PetscCall(CheckpointEntry(file, write, array[k].name, share->vesicles, array[k].each, all));
+    if (!write) PetscCall(ShareScatter(share, array[k].each, all, array[k].own));
+    for (PetscInt i = 0; i < n && !file->rank; i++)
+      if (PetscIsInfOrNanReal(all[i])) file->failed = PETSC_TRUE;
+    PetscCall(PetscFree(all));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,10 +1,6 @@
 /* The options of a scene: read, shown, written. */
 #pragma once
-#include "scene/spec.h"
-
-/* Defaults that depend on the scene, each with its condition and its reason: chosen by OptionsDepend
-   where the user gives no value, shown by -help and -view. */
-PETSC_EXTERN const OptionDefault scene_defaults[];
+#include "scene/defaults.h"
 
 /* Pairs of options that say one thing in two ways, the last ones NULL: of two sources the later one's counts. */
 PETSC_EXTERN const char *const scene_alternatives[][2];

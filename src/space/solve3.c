@@ -22,11 +22,11 @@ static PetscErrorCode MultSpace(Mat A, Vec X, Vec Y) {
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(Y, &y));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->F + v * s->size));
-  PetscCall(SpaceMobility(s, s->F, s->V));
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->V[k] = -s->V[k];
+    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->work.F + v * s->size));
+  PetscCall(SpaceMobility(s, s->work.F, s->work.V));
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = -s->work.V[k];
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3Rows(s->vesicle[v], x + 4 * v * s->count, s->V + v * s->size, y + 4 * v * s->count));
+    PetscCall(Vesicle3Rows(s->vesicle[v], x + 4 * v * s->count, s->work.V + v * s->size, y + 4 * v * s->count));
   PetscCall(VecRestoreArrayWrite(Y, &y));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -107,7 +107,7 @@ static PetscErrorCode RenewFactors(Space s, PetscReal a0) {
   PetscCall(MakeFactors(s));
   AgeRenew(&s->age, a0);
   s->made.a0 = a0;
-  PetscCall(PetscArraycpy(s->made.X, s->Xstar, s->share.own * s->size));
+  PetscCall(PetscArraycpy(s->made.X, s->work.Xstar, s->share.own * s->size));
   PetscCall(PetscArraycpy(s->made.sigma, s->state.sigma, s->share.own * s->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,16 +132,16 @@ static PetscErrorCode RightHandSide(Space s) {
   PetscReal *y;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(PetscArraycpy(s->F + v * s->size, s->vesicle[v]->known, s->size));
-  PetscCall(SpaceMobility(s, s->F, s->V));
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
+    PetscCall(PetscArraycpy(s->work.F + v * s->size, s->vesicle[v]->known, s->size));
+  PetscCall(SpaceMobility(s, s->work.F, s->work.V));
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
   PetscCall(PetscMalloc1(n, &y));
   PetscCall(VecGetArrayWrite(s->b, &b));
   for (PetscInt v = 0; v < s->share.own; v++) {
     const PetscInt at = v * s->size;
     const PetscReal *U = s->state.solved ? s->state.U + at : NULL;
-    PetscCall(Vesicle3Target(s->vesicle[v], s->Xhat + at, s->Xstar + at, U, b + v * n));
-    PetscCall(Vesicle3Rows(s->vesicle[v], NULL, s->V + at, y));
+    PetscCall(Vesicle3Target(s->vesicle[v], s->work.Xhat + at, s->work.Xstar + at, U, b + v * n));
+    PetscCall(Vesicle3Rows(s->vesicle[v], NULL, s->work.V + at, y));
     for (PetscInt k = 0; k < n; k++) b[v * n + k] -= y[k];
   }
   PetscCall(VecRestoreArrayWrite(s->b, &b));
@@ -155,12 +155,12 @@ static PetscErrorCode Velocities(Space s) {
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->F + v * s->size));
-    for (PetscInt k = 0; k < s->size; k++) s->F[v * s->size + k] += s->vesicle[v]->known[k];
+    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->work.F + v * s->size));
+    for (PetscInt k = 0; k < s->size; k++) s->work.F[v * s->size + k] += s->vesicle[v]->known[k];
   }
   PetscCall(VecRestoreArrayRead(s->x, &x));
-  PetscCall(SpaceMobility(s, s->F, s->V));
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->V[k] = s->background[k] - s->V[k];
+  PetscCall(SpaceMobility(s, s->work.F, s->work.V));
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

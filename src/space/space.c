@@ -39,7 +39,8 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(StateAllocate(s, &s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateAllocate(s, &s->old[j]));
   const PetscInt n = s->share.own * s->size;
-  PetscCall(PetscMalloc6(n, &s->Xstar, n, &s->Xhat, n, &s->Y, n, &s->background, n, &s->F, n, &s->V));
+  PetscCall(PetscMalloc6(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
+                         &s->work.V));
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
   s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(setting->order, 2), .guess = 2};
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, &s->cross));
@@ -58,7 +59,7 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(StateFree(&s->state));
   PetscCall(StateFree(&s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateFree(&s->old[j]));
-  PetscCall(PetscFree6(s->Xstar, s->Xhat, s->Y, s->background, s->F, s->V));
+  PetscCall(PetscFree6(s->work.Xstar, s->work.Xhat, s->work.Y, s->work.background, s->work.F, s->work.V));
   PetscCall(SphereDestroy(&s->sphere));
   PetscCall(PetscFree(*space));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,23 +79,23 @@ static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
   PetscFunctionBeginUser;
   for (int j = 1; j < BDF_MOST; j++) X[j] = s->old[j - 1].X;
   for (PetscInt k = 0; k < s->share.own * s->size; k++) {
-    s->Xstar[k] = s->Xhat[k] = 0;
+    s->work.Xstar[k] = s->work.Xhat[k] = 0;
     for (PetscInt j = 0; j < b->order; j++) {
-      s->Xstar[k] += b->star[j] * X[j][k];
-      s->Xhat[k] += b->history[j] / b->a0 * X[j][k];
+      s->work.Xstar[k] += b->star[j] * X[j][k];
+      s->work.Xhat[k] += b->history[j] / b->a0 * X[j][k];
     }
   }
-  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->Xstar));
+  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->work.Xstar));
   for (PetscInt v = 0; v < s->share.own; v++) {
     const Vesicle3 vesicle = s->vesicle[v];
     PetscReal *u;
     PetscBool done;
-    PetscCall(Vesicle3Place(vesicle, s->Xstar + v * s->size, s->state.sigma + v * s->count, &done));
+    PetscCall(Vesicle3Place(vesicle, s->work.Xstar + v * s->size, s->state.sigma + v * s->count, &done));
     if (!done) good = 0;
     PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
     s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u);
-    PetscCall(SphereTableProject(&s->sphere->fine, s->count, 3, u, s->background + v * s->size));
-    PetscCall(Vesicle3Velocity(vesicle, s->background + v * s->size));
+    PetscCall(SphereTableProject(&s->sphere->fine, s->count, 3, u, s->work.background + v * s->size));
+    PetscCall(Vesicle3Velocity(vesicle, s->work.background + v * s->size));
     PetscCall(PetscFree(u));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
@@ -112,7 +113,8 @@ static PetscErrorCode Guess(Space s, const BDF *b) {
   PetscCall(VecGetArrayWrite(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscScalar *Q = x + 4 * v * s->count;
-    for (PetscInt k = 0; k < s->size; k++) Q[k] = b->a0 * (s->Xstar[v * s->size + k] - s->Xhat[v * s->size + k]);
+    for (PetscInt k = 0; k < s->size; k++)
+      Q[k] = b->a0 * (s->work.Xstar[v * s->size + k] - s->work.Xhat[v * s->size + k]);
     for (PetscInt k = 0; k < s->count; k++) {
       Q[s->size + k] = 0;
       for (PetscInt j = 0; j < b->order; j++) Q[s->size + k] += b->star[j] * sigma[j][v * s->count + k];
@@ -133,9 +135,9 @@ static PetscErrorCode Iterate(Space s, PetscReal a0, PetscReal *moved) {
     PetscReal sum = 0;
     for (PetscInt k = 0; k < s->size; k++) {
       const PetscInt at = v * s->size + k;
-      const PetscReal new = s->Xhat[at] + x[4 * v * s->count + k] / a0;
-      sum += PetscSqr(new - s->Y[at]);
-      s->Y[at] = new;
+      const PetscReal new = s->work.Xhat[at] + x[4 * v * s->count + k] / a0;
+      sum += PetscSqr(new - s->work.Y[at]);
+      s->work.Y[at] = new;
     }
     *moved = PetscMax(*moved, PetscSqrtReal(sum / (4 * PETSC_PI)) / R);
   }
@@ -152,11 +154,11 @@ static PetscErrorCode Attempt(Space s, PetscReal dt) {
   PetscCall(Place(s, &b, s->state.t + dt));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Guess(s, &b));
-  PetscCall(PetscArraycpy(s->Y, s->Xstar, s->share.own * s->size));
+  PetscCall(PetscArraycpy(s->work.Y, s->work.Xstar, s->share.own * s->size));
   for (PetscInt pass = 0; pass < s->setting.newton && !*s->report.failure; pass++) {
     for (PetscInt v = 0; v < s->share.own; v++) {
       const PetscInt at = v * s->size;
-      PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->Xhat + at, s->Xstar + at, s->Y + at));
+      PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->work.Xhat + at, s->work.Xstar + at, s->work.Y + at));
     }
     PetscCall(SpaceSolve(s, pass));
     if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
@@ -172,7 +174,7 @@ static PetscErrorCode Attempt(Space s, PetscReal dt) {
 static PetscErrorCode TakeSolution(Space s) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(s->state.U, s->V, s->share.own * s->size));
+  PetscCall(PetscArraycpy(s->state.U, s->work.V, s->share.own * s->size));
   PetscCall(VecGetArrayRead(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(PetscArraycpy(s->state.sigma + v * s->count, x + 4 * v * s->count + s->size, s->count));
@@ -192,7 +194,7 @@ static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
   s->state.dt_last = dt;
   s->state.step = s->old[0].step;
   s->past = PetscMin(s->past + 1, BDF_MOST - 1);
-  PetscCall(PetscArraycpy(s->state.X, s->Y, s->share.own * s->size));
+  PetscCall(PetscArraycpy(s->state.X, s->work.Y, s->share.own * s->size));
   PetscCall(TakeSolution(s));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3KeepVolume(s->vesicle[v], s->state.X + v * s->size));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,4 +268,47 @@ PetscErrorCode SpaceStep(Space s, PetscReal until) {
   PetscCall(PetscTime(&end));
   s->report.seconds = end - start;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+SpaceNumbers SpaceGetNumbers(Space s) {
+  SpaceNumbers n = {
+      .step = s->state.step, .past = s->past, .solved = s->state.solved, .t = s->state.t, .made = s->made.a0};
+  n.dt_last[0] = s->state.dt_last;
+  for (int j = 1; j < BDF_MOST; j++) n.dt_last[j] = s->old[j - 1].dt_last;
+  AgeGetMemory(&s->age, n.age);
+  return n;
+}
+
+void SpaceSetNumbers(Space s, const SpaceNumbers *n) {
+  s->state.step = n->step;
+  s->state.solved = n->solved ? PETSC_TRUE : PETSC_FALSE;
+  s->state.t = n->t;
+  s->state.dt_last = n->dt_last[0];
+  s->past = n->past;
+  for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = n->dt_last[j];
+  s->made.a0 = n->made;
+  s->age = AgeSetMemory(n->age);
+}
+
+PetscInt SpaceArrays(Space s, SpaceArray array[SPACE_ARRAYS]) {
+  static const char *const groups[] = {"", "/previous", "/previous_1", "/solver"};
+  PetscInt n = 0;
+  for (PetscInt j = 0; j <= BDF_MOST; j++) {
+    const SpaceState made = {.X = s->made.X, .sigma = s->made.sigma}, *q = j == BDF_MOST ? &made
+                                                                           : j           ? &s->old[j - 1]
+                                                                                         : &s->state;
+    const struct {
+      const char *name;
+      PetscInt each;
+      PetscReal *own;
+    } all[] = {{"shape", s->size, q->X}, {"velocity", s->size, q->U}, {"tension", s->count, q->sigma}};
+    if (j == BDF_MOST ? s->made.a0 <= 0 : j > s->past) continue;
+    for (int k = 0; k < 3; k++) {
+      if (!all[k].own) continue;
+      (void)snprintf(array[n].name, sizeof(array[n].name), "%s/vesicle/%s", groups[j], all[k].name);
+      array[n].each = all[k].each;
+      array[n++].own = all[k].own;
+    }
+  }
+  return n;
 }

@@ -43,6 +43,11 @@ typedef struct {
   PetscReal *sigma;     /* [own][count] */
 } SpaceState;
 
+/* Arrays [own][3 count] of the step under way: X*, Xhat, the iterate Y, u_inf at X*, forces and velocities. */
+typedef struct {
+  PetscReal *Xstar, *Xhat, *Y, *background, *F, *V;
+} SpaceWork;
+
 /* What the factors were made for, of the own vesicles: X* [own][3 count], the tension that pulled [own][count]. */
 typedef struct {
   PetscReal a0; /* 0: none */
@@ -62,7 +67,7 @@ struct _p_Space {
   PetscInt past;    /* states before the present one that are known */
   StepPlan plan;
   SpaceReport report;
-  PetscReal *Xstar, *Xhat, *Y, *background, *F, *V; /* [own][3 count]; background: u_inf at X* */
+  SpaceWork work;
   Mat A;
   KSP ksp;
   Vec x, b;            /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
@@ -85,6 +90,26 @@ PETSC_EXTERN PetscErrorCode SpaceStart(Space space);
 /* SpaceStep - one time step, to the time `until` at most; the first one in parts that grow from 1/64 of it. When
    report.failure is not empty the step was not taken, and the state is the one before. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceStep(Space space, PetscReal until);
+
+/* What a checkpoint has of a space: its numbers, and arrays of the own vesicles, `each` numbers a vesicle. */
+typedef struct {
+  PetscInt step, past, solved;
+  PetscReal t, dt_last[BDF_MOST]; /* of the present state and those before it */
+  PetscReal made;                 /* a0 of the factors */
+  PetscReal age[AGE_MEMORY];
+} SpaceNumbers;
+typedef struct {
+  char name[32];
+  PetscInt each;
+  PetscReal *own;
+} SpaceArray;
+#define SPACE_ARRAYS (3 * BDF_MOST + 2)
+
+/* SpaceGetNumbers, SpaceSetNumbers - of the present state. SpaceArrays - the arrays that go with the numbers, and how
+   many there are. Not collective. */
+PETSC_EXTERN SpaceNumbers SpaceGetNumbers(Space space);
+PETSC_EXTERN void SpaceSetNumbers(Space space, const SpaceNumbers *numbers);
+PETSC_EXTERN PetscInt SpaceArrays(Space space, SpaceArray array[SPACE_ARRAYS]);
 
 /* SpaceRecall - the factors of a run that goes on, made again for what they were made for, space->made. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
