@@ -14,7 +14,7 @@ class Options(TypedDict, total=False):
     domain_cells: Value  # cells in x and y; cells must be square
     domain_bc_x: Literal['wall', 'periodic', 'free'] | None  # boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields
     domain_bc_y: Literal['wall', 'periodic', 'free'] | None  # boundaries at y_min and y_max; periodic where x is periodic too
-    flow_type: Literal['quiescent', 'shear', 'poiseuille', 'extension', 'uniform', 'custom', 'formula'] | None  # background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type
+    flow_type: Literal['quiescent', 'shear', 'poiseuille', 'extension', 'uniform', 'custom', 'formula', 'axial', 'tube'] | None  # background flow; custom: a function given from Python or C; formula: -flow_u and -flow_v, which need no -flow_type
     flow_rate: Value  # rate of shear or extension (1/time)
     flow_chi: Value  # in place of -flow_rate: chi = rate nu R0^3/c_b, R0 of the largest vesicle
     flow_ca_stretching: Value  # in place of -flow_rate: capillary number nu rate R0/E_s, R0 of the largest vesicle, E_s the largest -membrane_stretching
@@ -50,6 +50,11 @@ class Options(TypedDict, total=False):
     vesicle_spacing: Value  # marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (ib6 1.75, cbs54 1.5)
     vesicle_markers: Value  # number of markers of each vesicle, instead of the spacing; 0 takes the spacing
     vesicle_allow_close_markers: Literal['true', 'false'] | None  # accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (ib6 1.25, cbs54 1)
+    vesicle_spheroid: Literal['prolate', 'oblate'] | None  # three dimensions: initial shape, a spheroid about -vesicle_axis
+    vesicle_radius: Value  # R0 of the volume 4 pi R0^3/3, one for all, or one a vesicle (length)
+    vesicle_reduced_volume: Value  # v = 6 sqrt(pi) volume/area^(3/2), one for all, or one a vesicle
+    vesicle_half_axes: Value  # of an ellipsoid, in place of radius and reduced volume, the first along -vesicle_axis; three for all, or three a vesicle (length)
+    vesicle_axis: Value  # direction of a spheroid's axis, of any length; three numbers for all, or three a vesicle
     obstacle_shape: Literal['none', 'posts', 'couette', 'constriction', 'file'] | None  # solid bodies in the fluid: circles, two circles with fluid between them, two bumps on the walls y_min and y_max that face one another, curves of a file
     obstacle_radius: Value  # of posts: one for all or one each; of couette: the inner and the outer one (length)
     obstacle_center: Value  # x,y of the centres: a pair a post; of couette one for both circles or one each; of a constriction x counts (length)
@@ -96,6 +101,9 @@ class Options(TypedDict, total=False):
     membrane_memory: Value  # coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature
     membrane_rest: Value  # of membranes that stretch or remember: the shape at rest, the initial one, a circle of its length, or the curve of a file (initial|circle|FILE); its first point is that of the initial curve
     scheme_startup: Literal['euler', 'graded'] | None  # first step of orders 2 and 3: backward Euler, or five growing parts of a step
+    sphere_degree: Value  # p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many
+    sphere_label_rate: Value  # rate at which labels are drawn to a spectrum that falls off (1/time); 0: 10 times the larger of the flow's rate and bending/(nu R0^3)
+    bending_newton: Value  # Newton steps on the bending energy within a time step; 2: larger steps of stiff membranes
     time_step: Value  # dt (time)
     time_end: Value  # end time, reached exactly: the last steps are shortened (time)
     time_adapt: Literal['none', 'error'] | None  # step size: fixed, or from an error estimate (coupled of order 2 or 3)

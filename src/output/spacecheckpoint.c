@@ -4,30 +4,34 @@
 /* Write or read whole numbers and times; a run has had those that are read. */
 static PetscErrorCode MoveNumbers(SpaceOutput o, H5File *file, PetscBool write) {
   SpaceNumbers n = SpaceGetNumbers(o->space);
-  PetscInt whole[] = {n.step, n.past, n.solved, o->scheduled, o->record.its};
+  PetscInt whole[] = {n.step, n.past, n.order, n.solved, o->scheduled, o->record.its};
   PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
   const PetscInt reals = 2 + BDF_MOST + AGE_MEMORY;
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(real + 2, n.dt_last, BDF_MOST));
   PetscCall(PetscArraycpy(real + 2 + BDF_MOST, n.age, AGE_MEMORY));
   if (write) {
-    H5Put(file, "numbers", H5_INT, 5, whole);
+    H5Put(file, "numbers", H5_INT, 6, whole);
     H5Put(file, "times", H5_REAL, reals, real);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(H5Get(file, "numbers", H5_INT, 5, whole));
+  PetscCall(H5Get(file, "numbers", H5_INT, 6, whole));
   PetscCall(H5Get(file, "times", H5_REAL, reals, real));
-  PetscBool fits = whole[0] >= 0 && whole[1] >= 0 && whole[1] < BDF_MOST && whole[3] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool fits = whole[0] >= 0 && whole[1] >= 0 && whole[1] < BDF_MOST && whole[2] >= 1 && whole[2] <= BDF_MOST &&
+                           whole[4] >= 0
+                       ? PETSC_TRUE
+                       : PETSC_FALSE;
   for (PetscInt k = 0; k < reals; k++)
     if (PetscIsInfOrNanReal(real[k])) fits = PETSC_FALSE;
   if (!fits && !file->rank) file->failed = PETSC_TRUE;
   PetscCall(RestartEntries(o->scene, file));
-  n = (SpaceNumbers){.step = whole[0], .past = whole[1], .solved = whole[2], .t = real[0], .made = real[1]};
+  n = (SpaceNumbers){
+      .step = whole[0], .past = whole[1], .order = whole[2], .solved = whole[3], .t = real[0], .made = real[1]};
   PetscCall(PetscArraycpy(n.dt_last, real + 2, BDF_MOST));
   PetscCall(PetscArraycpy(n.age, real + 2 + BDF_MOST, AGE_MEMORY));
   SpaceSetNumbers(o->space, &n);
-  o->scheduled = whole[3];
-  o->record.its = whole[4];
+  o->scheduled = whole[4];
+  o->record.its = whole[5];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

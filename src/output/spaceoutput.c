@@ -6,7 +6,7 @@ static void SetNextTime(SpaceOutput o) {
 }
 
 static PetscErrorCode PrintOptions(FILE *file, const void *scene) {
-  return SummaryPrintOptions((Scene)scene, file);
+  return SummaryPrintOptions((Scene)scene, NULL, file);
 }
 
 PetscErrorCode SpaceOutputCreate(Scene scene, Space space, SpaceOutput *out) {

@@ -73,20 +73,17 @@ static PetscErrorCode ResolvedPrintOthers(FILE *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SummaryPrintOptions(Scene scene, FILE *f) {
+PetscErrorCode SummaryPrintOptions(Scene scene, Scheme scheme, FILE *f) {
   PetscFunctionBeginUser;
   fprintf(f, "# every option in force: mpirun -n RANKS petves -options_file resolved.opts repeats the run\n");
   PetscCall(SceneWriteOptions(scene, f));
+  if (scheme) PetscCall(SchemeWriteOptions(scheme, f));
   PetscCall(ResolvedPrintOthers(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ResolvedPrint(FILE *f, const void *what) {
-  const Scheme scheme = (Scheme)what;
-  PetscFunctionBeginUser;
-  PetscCall(SummaryPrintOptions(scheme->scene, f));
-  PetscCall(SchemeWriteOptions(scheme, f));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return SummaryPrintOptions(((Scheme)what)->scene, (Scheme)what, f);
 }
 
 PetscErrorCode SummaryBegin(Summary *s) {

@@ -25,13 +25,13 @@ typedef struct {
 } Summary;
 
 /* ProgressBegin - the run starts now, at the simulated time `from`. ProgressSay - as SummaryProgress.
-   SummaryPrintOptions - the options in force but those of solvers. SummaryPrintOrigin, SummaryPrintString - the members
-   of summary.json that every run ends with, from "ended" to the closing brace; a text between quotes. ProgressSay is
-   collective, the others are not. */
+   SummaryPrintOptions - the options in force, with those of the scheme's solvers (NULL: without). SummaryPrintOrigin,
+   SummaryPrintString - the members of summary.json that every run ends with, from "ended" to the closing brace; a text
+   between quotes. ProgressSay is collective, the others are not. */
 PETSC_EXTERN ProgressClock ProgressBegin(PetscReal from, PetscReal end);
 PETSC_EXTERN PetscErrorCode ProgressSay(ProgressClock *clock, MPI_Comm comm, PetscInt step, PetscReal t,
                                         PetscBool force);
-PETSC_EXTERN PetscErrorCode SummaryPrintOptions(Scene scene, FILE *file);
+PETSC_EXTERN PetscErrorCode SummaryPrintOptions(Scene scene, Scheme scheme, FILE *file);
 PETSC_EXTERN void SummaryPrintOrigin(FILE *file);
 PETSC_EXTERN void SummaryPrintString(FILE *file, const char text[]);
 

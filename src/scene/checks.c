@@ -58,6 +58,7 @@ static PetscErrorCode SceneCheckLengths(Scene s) {
   const SceneRule rules[] = {
     {s->domain.box.n != 4, "-domain_box {-domain_box}: not four numbers; allowed: x_min,x_max,y_min,y_max"},
     {s->domain.cells.n != 2, "-domain_cells {-domain_cells}: not two numbers; allowed: cells in x and in y"},
+    {s->flow.type == FLOW_AXIAL || s->flow.type == FLOW_TUBE, "-flow_type {-flow_type}: of three dimensions; allowed: -dim 3, or quiescent|shear|poiseuille|extension|uniform|custom|formula"},
     {s->flow.velocity.n != 2, "-flow_velocity {-flow_velocity}: not two numbers; allowed: u_x,u_y"},
     {s->gravity.g.n != 2, "-fluid_gravity {-fluid_gravity}: not two numbers; allowed: g_x,g_y"}};
   return REFUSE(s, rules);

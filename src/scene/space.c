@@ -35,19 +35,22 @@ static const char *const in_space[] = {"-dim",
                                        NULL};
 
 /* What scenes in space have in place of options of the plane. */
-static const char *const instead[][2] = {
-    {"-vesicle_area", "-dim 2; three dimensions have -vesicle_radius"},
-    {"-vesicle_reduced_area", "-dim 2; three dimensions have -vesicle_reduced_volume"},
-    {"-vesicle_semi_axes", "-dim 2; three dimensions have -vesicle_half_axes"},
-    {"-vesicle_shape", "-dim 2; three dimensions have -vesicle_spheroid"},
-    {"-vesicle_angle", "-dim 2; three dimensions have -vesicle_axis"},
-    {"-vesicle_markers", "-dim 2; three dimensions have -sphere_degree"},
-    {"-domain_cells", "-dim 2; three dimensions have no grid, see -sphere_degree"},
-    {"-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
+static const char *const instead[][2] = {{"-vesicle_area", "-dim 2; -dim 3 has -vesicle_radius"},
+                                         {"-vesicle_reduced_area", "-dim 2; -dim 3 has -vesicle_reduced_volume"},
+                                         {"-vesicle_semi_axes", "-dim 2; -dim 3 has -vesicle_half_axes"},
+                                         {"-vesicle_shape", "-dim 2; -dim 3 has -vesicle_spheroid"},
+                                         {"-vesicle_angle", "-dim 2; -dim 3 has -vesicle_axis"},
+                                         {"-vesicle_markers", "-dim 2; -dim 3 has -sphere_degree"},
+                                         {"-domain_cells", "-dim 2; -dim 3 has no grid, see -sphere_degree"},
+                                         {"-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
 
 const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
   const OptionNeed *need = row->need;
-  if (((Scene)scene)->dim == DIM_PLANE) return NULL;
+  if (((Scene)scene)->dim == DIM_PLANE) {
+    if (!strcmp(row->name, "-vesicle_radius"))
+      return "-dim 3; -dim 2 has -vesicle_area and -vesicle_reduced_area, or -vesicle_semi_axes";
+    return strcmp(row->name, "-vesicle_reduced_volume") ? NULL : "-dim 3; -dim 2 has -vesicle_reduced_area";
+  }
   if (need && need->any_of && need->offset == offsetof(struct _p_Scene, dim)) return NULL; /* one of space alone */
   for (int k = 0; in_space[k]; k++)
     if (!strcmp(row->name, in_space[k])) return NULL;

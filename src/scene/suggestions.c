@@ -16,7 +16,6 @@ static const OptionSuggestion suggestions[] = {
     {"*shear_rate *strain_rate", "-flow_rate is meant?"},
     {"*capillary", "-flow_ca (in a channel) or -flow_chi is meant?"},
     {"*kappa *rigidity *bending_modulus *bending_stiffness", "-vesicle_bending is meant?"},
-    {"*reduced_volume", "-vesicle_reduced_area is meant?"},
     {"-gpu *cuda *graphics", "no graphics processors; mpirun -n RANKS takes several cores" NO},
     {"-amr *adaptive_grid *adaptive_mesh *refinement",
      "one grid of equal cells, -domain_cells; steps adapt with -time_adapt error" NO},
@@ -34,7 +33,7 @@ static const OptionSuggestion suggestions[] = {
     {"-periodic", "-domain_bc_x periodic is meant?"},
     {"-vesicles *n_vesicles", "-vesicle_count is meant?"},
     {"-obstacles", "-obstacle_shape is meant?"},
-    {"-radius *vesicle_radius", "-vesicle_area and -vesicle_reduced_area, or -vesicle_semi_axes, are meant?"},
+    {"-radius", "-vesicle_area and -vesicle_reduced_area, or -vesicle_semi_axes, are meant?"},
     {"*volume", "-vesicle_area is meant?"},
     {"*aspect_ratio", "-vesicle_semi_axes is meant?"},
     {"-flow_shear", "-flow_type shear is meant?"},
@@ -57,7 +56,8 @@ static const OptionSuggestion suggestions[] = {
     {"*surface_tension", "the tension follows from the membrane's length, which stays" NO},
     {"*permeability *osmosis", "-membrane_permeability and -membrane_osmotic are meant?"},
     {"*constriction *stenosis", "-obstacle_shape constriction is meant?"},
-    {"*3d -dim *dimension *axisymmetric", "two dimensions only, without axial symmetry" NO},
+    {"*3d *dimension", "-dim 3 is meant?"},
+    {"*axisymmetric", "no axial symmetry" NO},
     {NULL, NULL}};
 
 /* Solver options that users write most, as candidates for a suggestion. */

@@ -54,5 +54,12 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   PetscCall(SphereDestroy(&sphere));
   PetscCall(SpaceCreate(s->comm, &setting, count, material, X, space));
   PetscCall(PetscFree2(material, X));
+  if (!(*space)->cross) PetscFunctionReturn(PETSC_SUCCESS);
+  const CrossLayer cross = (*space)->cross;
+  PetscCall(CrossLayerPlace(cross, (*space)->state.X));
+  PetvesCheck(cross->gap > 0, s->comm,
+              "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
+              " overlap by %.3g; allowed: centers farther from one another",
+              cross->nearest[0] + 1, cross->nearest[1] + 1, (double)-cross->gap);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 #include "space/space.h"
 
 #define STILL 1e-6 /* of a step: in which shapes stay, for the first velocities and tensions */
+#define SMOOTH 0.7 /* least gain of a prediction by three states over that by two for order 3 */
 #define PARTS 7    /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
 
 static PetscErrorCode StateAllocate(Space s, SpaceState *q) {
@@ -65,11 +66,40 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The formula of the next step, with as many states as are known. */
+/* The steps that led to the states, the one to be made first. */
+static void StepsBefore(Space s, PetscReal dt, PetscReal step[BDF_STATES]) {
+  (void)PetscArrayzero(step, BDF_STATES);
+  step[0] = dt;
+  step[1] = s->state.dt_last;
+  for (int j = 1; j < BDF_MOST; j++) step[j + 1] = s->old[j - 1].dt_last;
+}
+
+/* The formula of the next step, of the plan's order as far as states are known. */
 static BDF NextFormula(Space s, PetscReal dt) {
-  PetscReal step[BDF_STATES] = {dt, s->state.dt_last};
-  for (int j = 1; j < s->past; j++) step[j + 1] = s->old[j - 1].dt_last;
-  return BDFCoefficients(PetscMin(s->setting.order, s->past + 1), step);
+  PetscReal step[BDF_STATES];
+  StepsBefore(s, dt, step);
+  return BDFCoefficients(PetscMin(s->plan.order, s->past + 1), step);
+}
+
+/* Order 3 after a step of size dt that has led to Y, where three states would have told Y better than two. */
+static PetscErrorCode ChooseOrder(Space s, PetscReal dt) {
+  const PetscReal *X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
+  PetscReal step[BDF_STATES], star[BDF_STATES], miss[2] = {0, 0};
+  PetscFunctionBeginUser;
+  s->plan.order = PetscMin(s->setting.order, 2);
+  if (s->setting.order < 3 || s->past < BDF_MOST - 1) PetscFunctionReturn(PETSC_SUCCESS);
+  StepsBefore(s, dt, step);
+  for (int q = 0; q < 2; q++) {
+    BDFExtrapolation(2 + q, step, star);
+    for (PetscInt k = 0; k < s->share.own * s->size; k++) {
+      PetscReal off = s->work.Y[k];
+      for (int j = 0; j < 2 + q; j++) off -= star[j] * X[j][k];
+      miss[q] += off * off;
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 2, MPIU_REAL, MPI_SUM, s->share.comm));
+  if (miss[1] < PetscSqr(SMOOTH) * miss[0]) s->plan.order = 3;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* X*, Xhat; surfaces and u_inf at X* at time t. */
@@ -86,6 +116,12 @@ static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
     }
   }
   if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->work.Xstar));
+  if (s->cross && s->cross->gap <= 0) {
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
+                            "vesicles %" PetscInt_FMT " and %" PetscInt_FMT " overlap by %g", s->cross->nearest[0] + 1,
+                            s->cross->nearest[1] + 1, (double)-s->cross->gap));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt v = 0; v < s->share.own; v++) {
     const Vesicle3 vesicle = s->vesicle[v];
     PetscReal *u;
@@ -187,6 +223,7 @@ static PetscErrorCode TakeSolution(Space s) {
 static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
   const SpaceState last = s->old[BDF_MOST - 2];
   PetscFunctionBeginUser;
+  PetscCall(ChooseOrder(s, dt));
   for (int j = BDF_MOST - 2; j > 0; j--) s->old[j] = s->old[j - 1];
   s->old[0] = s->state;
   s->state = last; /* its arrays */
@@ -271,8 +308,12 @@ PetscErrorCode SpaceStep(Space s, PetscReal until) {
 }
 
 SpaceNumbers SpaceGetNumbers(Space s) {
-  SpaceNumbers n = {
-      .step = s->state.step, .past = s->past, .solved = s->state.solved, .t = s->state.t, .made = s->made.a0};
+  SpaceNumbers n = {.step = s->state.step,
+                    .past = s->past,
+                    .order = s->plan.order,
+                    .solved = s->state.solved,
+                    .t = s->state.t,
+                    .made = s->made.a0};
   n.dt_last[0] = s->state.dt_last;
   for (int j = 1; j < BDF_MOST; j++) n.dt_last[j] = s->old[j - 1].dt_last;
   AgeGetMemory(&s->age, n.age);
@@ -285,6 +326,7 @@ void SpaceSetNumbers(Space s, const SpaceNumbers *n) {
   s->state.t = n->t;
   s->state.dt_last = n->dt_last[0];
   s->past = n->past;
+  s->plan.order = n->order;
   for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = n->dt_last[j];
   s->made.a0 = n->made;
   s->age = AgeSetMemory(n->age);
@@ -304,7 +346,7 @@ PetscInt SpaceArrays(Space s, SpaceArray array[SPACE_ARRAYS]) {
     } all[] = {{"shape", s->size, q->X}, {"velocity", s->size, q->U}, {"tension", s->count, q->sigma}};
     if (j == BDF_MOST ? s->made.a0 <= 0 : j > s->past) continue;
     for (int k = 0; k < 3; k++) {
-      if (!all[k].own) continue;
+      if (j == BDF_MOST && k == 1) continue; /* factors have no velocity */
       (void)snprintf(array[n].name, sizeof(array[n].name), "%s/vesicle/%s", groups[j], all[k].name);
       array[n].each = all[k].each;
       array[n++].own = all[k].own;

@@ -93,7 +93,7 @@ PETSC_EXTERN PetscErrorCode SpaceStep(Space space, PetscReal until);
 
 /* What a checkpoint has of a space: its numbers, and arrays of the own vesicles, `each` numbers a vesicle. */
 typedef struct {
-  PetscInt step, past, solved;
+  PetscInt step, past, order, solved;
   PetscReal t, dt_last[BDF_MOST]; /* of the present state and those before it */
   PetscReal made;                 /* a0 of the factors */
   PetscReal age[AGE_MEMORY];

@@ -1,0 +1,84 @@
+"""Vesicles in three dimensions, against solutions of the shape equations, theories of small deformation and themselves turned.
+
+Steady states in shear, equilibria and relaxation: independent calculations with spherical harmonics (degree 16) and of the shape equations.
+"""
+
+import numpy as np
+import pytest
+from harness import run_petves
+
+SPACE = "-dim 3 -vesicle_bending 0.1 -sphere_degree 8 -output_every 100 -checkpoint_every 0"
+SHEAR = f"{SPACE} -flow_type shear -vesicle_axis 0.8776,0.4794,0"
+
+
+@pytest.mark.parametrize(
+    "change, angle, energy, axes, rotation",
+    [
+        ("-vesicle_reduced_volume 0.9 -time_step 0.5", 0.153393, 1.208341, (0.7466, 0.86161, 1.55499), -0.341488),
+        ("-vesicle_reduced_volume 0.9 -time_step 1", 0.153393, 1.208341, (0.7466, 0.86161, 1.55499), -0.341488),
+        ("-vesicle_reduced_volume 0.95 -time_step 0.25", 0.180015, 1.101962, (0.80595, 0.92642, 1.33936), -0.41303),
+    ],
+)
+def test_tank_treading(change, angle, energy, axes, rotation, tmp_path):
+    """A steady state does not depend on the step."""
+    last = run_petves(tmp_path / "run", f"{SHEAR} -time_end 24 {change}").series
+    assert abs(last["inclination"][-1] / np.pi - angle) < 3e-6
+    assert abs(last["energy_bending"][-1] / (0.1 * 8 * np.pi) - energy) < 5e-6
+    assert np.allclose([last[f"axis_{k}"][-1] for k in ("short", "middle", "long")], axes, atol=2e-5)
+    assert abs(last["rotation_z"][-1] - rotation) < 1e-5
+    assert abs(last["area_error"][-1]) < 1e-5 and abs(last["volume_error"][-1]) < 1e-12
+    assert np.mean(last["coupled_its"][1:]) < 6
+
+
+def test_viscosity_ratio(tmp_path):
+    """Five times as viscous inside, reduced volume 0.99: 29.953 degrees."""
+    options = f"{SHEAR} -vesicle_reduced_volume 0.99 -vesicle_viscosity_ratio 5 -time_step 0.1 -time_end 8"
+    assert abs(np.degrees(run_petves(tmp_path / "run", options).series["inclination"][-1]) - 29.953) < 0.02
+
+
+@pytest.mark.parametrize("shape, volume, energy", [("prolate", 0.9, 1.189644), ("oblate", 0.9, 1.21786)])
+def test_equilibrium(shape, volume, energy, tmp_path):
+    """The energy of a shape at rest, which never rises on the way."""
+    options = f"{SPACE} -vesicle_bending 1 -vesicle_spheroid {shape} -vesicle_reduced_volume {volume} -sphere_degree 10"
+    run = run_petves(tmp_path / "run", f"{options} -scheme_order 1 -time_step 1 -time_end 10 -bending_newton 2")
+    energies = run.series["energy_bending"] / (8 * np.pi)
+    assert abs(energies[-1] - energy) < 1e-5
+    assert np.diff(energies).max() < 1e-7
+
+
+def test_orders_in_time(tmp_path):
+    """The angle at t = 1.6 from a smooth start at t = 0.4, made by tiny steps."""
+
+    small = f"{SHEAR} -sphere_degree 6"
+
+    def angle(order, step):
+        folder = tmp_path / f"{order}_{step}"
+        start = run_petves(folder, f"{small} -scheme_order {order} -time_step 0.02 -time_end 0.4").folder
+        options = f"{small} -scheme_order {order} -time_step {step} -time_end 1.6 -restart {start / 'checkpoint.h5'}"
+        return run_petves(tmp_path / f"{order}_{step}_on", options).series["inclination"][-1]
+
+    for order, least in ((2, 1.8), (3, 2.5)):
+        found = [angle(order, step) for step in (0.1, 0.05, 0.025)]
+        assert np.log2(abs((found[0] - found[1]) / (found[1] - found[2]))) > least
+
+
+def test_turned_in_space(tmp_path):
+    """Space has no direction of its own: a vesicle at rest that is turned, poles included, relaxes alike."""
+    rows = []
+    for axis in ("1,0,0", "0,0,1", "0.3,-0.5,0.8"):
+        options = f"{SPACE} -sphere_degree 10 -vesicle_half_axes 1.2,0.9,0.9 -vesicle_axis {axis} -time_step 0.1 -time_end 0.2"
+        rows.append(run_petves(tmp_path / axis, options).series["energy_bending"])
+    assert np.allclose(rows, rows[0], rtol=1e-7)
+
+
+def test_one_rank_or_three(tmp_path):
+    """Two vesicles that pass one another, also from a checkpoint on, which gives the same bits."""
+    pair = f"{SHEAR} -vesicle_count 2 -vesicle_center -1.6,0.3,0,1.6,-0.3,0 -time_step 0.2 -coupled_ksp_rtol 1e-12"
+    one, three = (run_petves(tmp_path / str(n), f"{pair} -time_end 2", n).series for n in (1, 3))
+    for name in ("inclination_1", "center_x_2", "tension_max", "energy_bending"):
+        assert np.allclose(one[name], three[name], rtol=1e-9)
+    half = run_petves(tmp_path / "half", f"{pair} -time_end 1")
+    again = f"{pair} -time_end 2 -restart {half.folder / 'checkpoint.h5'} -output_dir {half.folder}"
+    rest = run_petves(tmp_path / "half", again).series
+    for name in set(one) - {"wall"}:
+        assert np.array_equal(one[name], rest[name]), name

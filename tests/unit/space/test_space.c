@@ -1,0 +1,142 @@
+/* Vesicles in three dimensions: what they do to one another, and what a step solves for. */
+#include "facts.h"
+#include "space/space.h"
+#include "sphere/shape.h"
+
+/* Spheres of radii a and b at a distance r along x. A force F on a moves b by (1 + (a^2 + b^2)/(3 r^2)) F/(8 pi nu r)
+   across, and by (2 - 2 (a^2 + b^2)/(3 r^2)) F/(8 pi nu r) along (Faxen). */
+static void CheckSpheres(PetscInt p, PetscReal r, PetscReal most) {
+  const PetscInt count = HarmonicsCount(p), size = 3 * count;
+  const PetscReal radius[2] = {1, 0.6}, nu = 0.7, one = PetscSqrtReal(4 * PETSC_PI);
+  PetscMPIInt rank, ranks;
+  Sphere sphere;
+  CrossLayer cross;
+  TestCall(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  const PetscInt first = 2 * rank / ranks, own = 2 * (rank + 1) / ranks - first;
+  PetscReal *all = TestReals(2 * size), *F = TestReals(2 * size), *U = TestReals(2 * size), *sum = TestReals(2 * size);
+  for (int v = 0; v < 2; v++) {
+    SurfaceEllipsoid(p, (PetscReal[]){radius[v], radius[v], radius[v]}, all + v * size);
+    all[v * size] += v * r * one;
+  }
+  TestCall(SphereCreate(p, &sphere));
+  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, &cross));
+  TestCall(CrossLayerPlace(cross, all + first * size));
+  CHECK(PetscAbsReal(cross->gap - (r - 1.6)) < 1e-2 * r, "degree %d: the gap of spheres %g apart is %.4f", (int)p, r,
+        cross->gap);
+  for (int d = 0; d < 3; d++) {
+    const PetscReal a2 = (radius[0] * radius[0] + radius[1] * radius[1]) / (3 * r * r),
+                    want = (d == 0 ? 2 - 2 * a2 : 1 + a2) / (8 * PETSC_PI * nu * r);
+    for (PetscInt k = 0; k < 2 * size; k++) F[k] = U[k] = sum[k] = 0;
+    if (first == 0 && own) F[d * count] = 1 / one; /* a unit force on the first sphere */
+    TestCall(CrossLayerAdd(cross, F, U));
+    for (PetscInt k = 0; k < own * size; k++) sum[first * size + k] = U[k];
+    TestSum((PetscMPIInt)(2 * size), sum);
+    const PetscReal off = PetscAbsReal(sum[size + d * count] / one / want - 1);
+    CHECK(off < most, "degree %d, spheres %g apart: velocity of the other along %c, relative error %.1e", (int)p, r,
+          "xyz"[d], off);
+  }
+  TestCall(CrossLayerDestroy(&cross));
+  TestCall(SphereDestroy(&sphere));
+}
+
+static void Shear(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+  for (PetscInt i = 0; i < n; i++) {
+    u[i] = *(const PetscReal *)rate * X[n + i];
+    u[n + i] = u[2 * n + i] = 0;
+  }
+}
+
+/* Two vesicles in shear take three steps: what the rows say of the solution, and that forces do no work on M alone. */
+static void CheckStep(PetscReal ratio) {
+  const PetscInt p = 6, count = HarmonicsCount(p), size = 3 * count, vesicles = ratio == 1 ? 2 : 1;
+  const PetscReal rate = 1, axes[3] = {1.5, 0.85, 0.8}, axis[3] = {1, 0.4, 0.1};
+  PetscReal *X = TestReals(vesicles * size), *F = TestReals(2 * size), *G = TestReals(2 * size),
+            *U = TestReals(2 * size), *V = TestReals(2 * size), work[2];
+  Vesicle3Setting material[2];
+  Sphere sphere;
+  Surface surface;
+  Space s;
+  unsigned seed = 3;
+  TestCall(SphereCreate(p, &sphere));
+  TestCall(SurfaceCreate(sphere, &surface));
+  for (PetscInt v = 0; v < vesicles; v++) {
+    SurfaceEllipsoid(p, axes, X + v * size);
+    ShapeAlign(count, axis, (PetscReal[]){0, 0, v * 2.6}, X + v * size);
+    TestCall(SurfacePlace(surface, X + v * size, PETSC_FALSE));
+    material[v] = (Vesicle3Setting){
+        .nu = 1, .bending = 0.2, .label_rate = 10, .ratio = ratio, .area = surface->area, .volume = surface->volume};
+  }
+  const SpaceSetting setting = {
+      .p = p, .order = 3, .newton = 2, .rtol = 1e-11, .flow = Shear, .context = &rate, .policy = {.base = 0.1}};
+  TestCall(SpaceCreate(PETSC_COMM_WORLD, &setting, vesicles, material, X, &s));
+  TestCall(SpaceStart(s));
+  for (int step = 0; step < 3; step++) TestCall(SpaceStep(s, PETSC_MAX_REAL));
+  CHECK(!*s->report.failure && PetscAbsReal(s->state.t - 0.3) < 1e-12, "ratio %g: three steps are taken", ratio);
+  CHECK(s->report.its <= 16, "ratio %g: two solves take %d iterations", ratio, (int)s->report.its);
+  const PetscInt own = s->share.own;
+  PetscReal error[3] = {0}, *y = TestReals(4 * count);
+  for (PetscInt v = 0; v < own; v++) {
+    TestCall(Vesicle3Rows(s->vesicle[v], NULL, s->state.U + v * size, y));
+    for (PetscInt k = 1; k < count; k++) error[0] = PetscMax(error[0], PetscAbsReal(y[size + k]));
+    TestCall(SurfacePlace(surface, s->state.X + v * size, PETSC_FALSE));
+    error[1] = PetscMax(error[1], PetscAbsReal(surface->volume / material[0].volume - 1));
+    error[2] = PetscMax(error[2], PetscAbsReal(surface->area / material[0].area - 1));
+  }
+  TestMost(3, error);
+  CHECK(error[0] < 1e-8, "ratio %g: the membrane does not stretch, %.1e", ratio, error[0]);
+  CHECK(error[1] < 1e-10 && error[2] < 2e-3, "ratio %g: volume off by %.1e, area by %.1e", ratio, error[1], error[2]);
+  for (PetscInt k = 0; k < own * size; k++) {
+    F[k] = TestRandom(&seed);
+    G[k] = TestRandom(&seed);
+  }
+  TestCall(SpaceMobility(s, F, U));
+  TestCall(SpaceMobility(s, G, V));
+  work[0] = TestProduct(own * size, G, U);
+  work[1] = TestProduct(own * size, F, V);
+  TestSum(2, work);
+  if (ratio == 1)
+    CHECK(PetscAbsReal(work[0] - work[1]) < 1e-12, "the mobility of all vesicles is symmetric, %.1e",
+          work[0] - work[1]);
+  TestCall(SpaceDestroy(&s));
+  TestCall(SurfaceDestroy(&surface));
+  TestCall(SphereDestroy(&sphere));
+}
+
+static void CheckShapes(void) {
+  for (int q = 0; q < 6; q++) {
+    const PetscReal v = 0.6 + 0.07 * q;
+    const PetscBool oblate = q % 2 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscInt p = 8, size = 3 * HarmonicsCount(p);
+    PetscReal along, across, *X = TestReals(size), tilted[3] = {0.2, -0.5, 0.7}, center[3] = {1, 2, -3}, off = 0;
+    Sphere sphere;
+    Surface surface;
+    ShapeMoments m;
+    ShapeSpheroid(v, oblate, 1.1, &along, &across);
+    SurfaceEllipsoid(p, (PetscReal[]){along, across, across}, X);
+    ShapeAlign(size / 3, tilted, center, X);
+    TestCall(SphereCreate(p, &sphere));
+    TestCall(SurfaceCreate(sphere, &surface));
+    TestCall(SurfacePlace(surface, X, PETSC_FALSE));
+    TestCall(ShapeMeasure(surface, &m));
+    const PetscReal found = 6 * PetscSqrtReal(PETSC_PI) * surface->volume / PetscPowReal(surface->area, 1.5);
+    CHECK(PetscAbsReal(found / v - 1) < 1e-4 && PetscAbsReal(surface->volume / (4 * PETSC_PI / 3 * 1.331) - 1) < 1e-12,
+          "%s spheroid of reduced volume %g: %.6f", oblate ? "oblate" : "prolate", v, found);
+    const PetscReal *axis = m.direction[oblate ? 0 : 2], length = PetscSqrtReal(0.78);
+    for (int d = 0; d < 3; d++)
+      off = PetscMax(off, PetscMax(PetscAbsReal(PetscAbsReal(axis[d]) - PetscAbsReal(tilted[d]) / length),
+                                   PetscAbsReal(m.center[d] - center[d])));
+    CHECK(off < 1e-10 && PetscAbsReal(m.axis[oblate ? 0 : 2] - along) < 1e-10,
+          "axis and centre are those asked for, %.1e", off);
+    TestCall(SurfaceDestroy(&surface));
+    TestCall(SphereDestroy(&sphere));
+  }
+}
+
+void Facts(void) {
+  CheckShapes();
+  CheckSpheres(8, 4, 1e-10);
+  CheckSpheres(8, 2, 1e-4);
+  CheckStep(1);
+  CheckStep(5);
+}
