@@ -9,26 +9,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from petves.run import Run, RunError
+from petves.surfaces import SurfaceRun, is_space
 
 if TYPE_CHECKING:
     import xarray
 
 #: Units of what a run has, in the user's lengths and times; "1" is a number, "" not a physical quantity.
 _HAVE = {
-    "1": "stretch viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
+    "1": "stretch volume_error spectrum_tail viscosity_wall viscosity step area_error length_error edge_ratio tension_its bending_its coupled_its nsolve",
     "s": "wall",
     "time": "time dt step_time",
-    "length": "gap length center_x center_y area_shift markers tracers obstacles obstacle_center_x obstacle_center_y x y h",
+    "length": "gap length axis_short axis_middle axis_long center_x center_y center_z points coefficients area_shift markers tracers obstacles obstacle_center_x obstacle_center_y x y h",
     "length^2": "area",
-    "length/time": "u v velocity normal_speed velocity_x velocity_y obstacle_velocity_x obstacle_velocity_y",
+    "length^3": "volume",
+    "length/time": "u v velocity normal_speed velocity_x velocity_y velocity_z obstacle_velocity_x obstacle_velocity_y",
     "length^2/time": "nu flux stream_function",
     "length^2/time^2": "p normal_stress_wall normal_stress pressure_drop wall_shear_stress",
-    "length^3/time^2": "tension obstacle_force obstacle_force_x obstacle_force_y",
+    "length^3/time^2": "tension tension_min tension_max obstacle_force obstacle_force_x obstacle_force_y",
     "length^4/time^2": "energy_kinetic energy_bending energy_gravity energy_contact energy_stretching energy_potential obstacle_torque",
     "length^5/time^2": "c_b",
-    "1/time": "div_max surface_div_max vorticity obstacle_rotation",
+    "1/time": "rotation_z div_max surface_div_max vorticity obstacle_rotation",
     "length/time^2": "pressure_gradient",
-    "radian": "inclination obstacle_angle",
+    "radian": "inclination elevation obstacle_angle",
     "radian/time": "frequency",
 }
 UNITS = {name: unit for unit, names in _HAVE.items() for name in names.split()}
@@ -39,7 +41,7 @@ def unit(name: str) -> str:
     return UNITS.get(re.sub(r"^each_|_\d+$", "", name), "")
 
 
-def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
+def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Dataset:
     """Read a run's folder.
 
     Parameters
@@ -61,7 +63,9 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
         (step, member) are those of vesicles.h5. Every variable has ``attrs["units"]``; the dataset's attributes are h,
         nu, c_b, box, periodic and walls ("x", "y", "xy" or ""), folder and reason. u, v, p and each_area, ... are read from
         their files when they are used, a frame at a time where a frame is asked for; ``.chunk(time=1)`` makes dask's
-        arrays of them. Run: see there, and `unit`.
+        arrays of them. Run: see there, and `unit`. Of a run in three dimensions: points, velocity (time, vesicle, point,
+        xyz), tension (time, vesicle, point), coefficients (time, vesicle, xyz, harmonic), triangles (triangle, corner),
+        or a `petves.surfaces.SurfaceRun`.
 
     Raises
     ------
@@ -76,6 +80,9 @@ def load(folder: str | Path, kind: str = "auto") -> Run | xarray.Dataset:
         if kind == "xarray":
             raise RunError("xarray is not installed; install python3-xarray, or use kind='numpy'") from None
         kind = "numpy"
+    if is_space(folder):
+        surfaces = SurfaceRun.read(folder)
+        return surfaces if kind == "numpy" else surfaces.dataset()
     run = Run.read(folder)
     return run if kind == "numpy" else _dataset(run, xarray)
 

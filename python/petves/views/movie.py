@@ -11,8 +11,10 @@ import numpy as np
 from petves.files import writing
 from petves.progress import progress_bar
 from petves.run import Run, RunError
+from petves.surfaces import SurfaceRun, is_space
 from petves.views.field import FIELDS, TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines, reach
 from petves.views.figures import PLAIN, Look, add_bar
+from petves.views.surfaces import film_surfaces
 from petves.views.window import Window
 
 DOTS = 150  # an inch
@@ -58,7 +60,7 @@ def movie(
     RunError
         When the run cannot be read, or the file not be written this way.
     """
-    run = Run.read(folder)
+    run = SurfaceRun.read(folder) if is_space(folder) else Run.read(folder)
     ffmpeg = shutil.which("ffmpeg") is not None
     path = Path(output) if output else run.folder / ("movie.mp4" if ffmpeg else "movie.gif")
     if path.suffix not in (".mp4", ".gif"):
@@ -67,12 +69,14 @@ def movie(
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
     if field not in FIELDS:
         raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
+    if isinstance(run, SurfaceRun):
+        return film_surfaces(run, path, chosen_frames(run, every, begin, end), rate, width, look)
     with writing(path) as fresh:
         _film(run, chosen_frames(run, every, begin, end), fresh, field, rate, width, streamlines, look)
     return path
 
 
-def chosen_frames(run: Run, every: int, begin: float | None, end: float | None) -> np.ndarray:
+def chosen_frames(run: Run | SurfaceRun, every: int, begin: float | None, end: float | None) -> np.ndarray:
     """Return the numbers of the saved times from `begin` to `end`, one in `every`."""
     if every < 1:
         raise RunError(f"every {every}: out of range; allowed: 1 or more")

@@ -9,10 +9,12 @@ import numpy as np
 
 from petves.measures import ENERGIES
 from petves.run import Run, RunError
+from petves.surfaces import SurfaceRun, is_space
 from petves.views.curves import plot_columns, plot_line, plot_points, plot_walls
 from petves.views.field import FIELDS, OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
 from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look
 from petves.views.figures import dress, legend_above, new_figure, new_sheet, save_figure
+from petves.views.surfaces import plot_surfaces
 from petves.views.window import Window
 
 if TYPE_CHECKING:
@@ -62,13 +64,20 @@ def plot_run(
     list of Path
         The files written. All: energy, field, with vesicles conservation, motion, tension, shapes, and series where the run
         has a gap, a pressure drop, torques or a viscosity. Asked for: series, field, points, line, walls; with `time`
-        pictures of one time have what was asked for in their names, as in field_t1.5.png.
+        pictures of one time have what was asked for in their names, as in field_t1.5.png. Of a run in three dimensions
+        surfaces and course, or surfaces at that time.
 
     Raises
     ------
     RunError
         When the run cannot be read, or not be drawn this way.
     """
+    if is_space(folder):
+        if columns or fields or len(points) or line is not None or walls:
+            raise RunError(
+                f"{folder}: a run in three dimensions, which has pictures of its surfaces alone; allowed: --time"
+            )
+        return plot_surfaces(SurfaceRun.read(folder), look, time)
     run = Run.read(folder)
     for field in fields:
         if field not in FIELDS:

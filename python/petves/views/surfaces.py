@@ -1,0 +1,110 @@
+"""Pictures and films of runs in three dimensions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from petves.files import writing
+from petves.progress import progress_bar
+from petves.surfaces import SurfaceRun
+from petves.views.curves import draw_curves
+from petves.views.figures import PLAIN, Look, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: Views: what is on the two axes of the picture, and from where one looks (elevation, azimuth in degrees).
+SIDES = {"$x, y$": (90, -90), "$x, z$": (0, -90), "$y, z$": (0, 0)}
+LIGHT = np.array([0.3, -0.5, 0.8])  # where it comes from
+SHADE = 0.55  # of a surface that looks away from the light
+
+
+def plot_surfaces(run: SurfaceRun, look: Look = PLAIN, time: float | None = None) -> list[Path]:
+    """Draw the surfaces at a saved time, the last one if none is given, and the course of the run; return the files."""
+    frame = -1 if time is None else run.frame_at(time)
+    figure = _figure(look.width or 7)
+    _draw(figure, run, frame, _limits(run, [frame]), look)
+    drawn = [save_figure(figure, run.folder / ("surfaces.png" if time is None else f"surfaces_t{time:g}.png"), look)]
+    if time is None:
+        drawn.append(_plot_course(run, look))
+    return drawn
+
+
+def film_surfaces(run: SurfaceRun, path: Path, frames: np.ndarray, rate: float, width: int, look: Look = PLAIN) -> Path:
+    """Film the surfaces at these saved times; return the file."""
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    dots = 150
+    figure = _figure(2 * round(width / 2) / dots)
+    figure.set_size_inches(2 * np.round(figure.get_size_inches() * dots / 2) / dots)
+    limits = _limits(run, frames)
+    options = dict(codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
+    writer = FFMpegWriter(fps=rate, **options) if path.suffix == ".mp4" else PillowWriter(fps=rate)
+    with writing(path) as fresh, writer.saving(figure, str(fresh), dots), progress_bar(
+        len(frames), unit="frames"
+    ) as bar:
+        for done, frame in enumerate(frames):
+            figure.clear()
+            _draw(figure, run, frame, limits, look)
+            writer.grab_frame()
+            bar(done + 1)
+    return path
+
+
+def _figure(width: float) -> Figure:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, width * 0.86))
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _limits(run: SurfaceRun, frames: Any) -> tuple[float, float]:
+    chosen = run.tension[frames]
+    return float(chosen.min()), float(max(chosen.max(), chosen.min() + 1e-12))
+
+
+def _draw(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[float, float], look: Look) -> None:
+    """Draw one view from the side and three along the axes, coloured by tension."""
+    import matplotlib
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    colours = ScalarMappable(Normalize(*limits), matplotlib.colormaps[look.cmap or "viridis"])
+    corners = run.points[frame][:, run.triangles]  # vesicle, triangle, corner, xyz
+    faces = corners.reshape(-1, 3, 3)
+    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    bright = SHADE + (1 - SHADE) * (1 + normals @ (LIGHT / np.linalg.norm(LIGHT))) / 2
+    rgba = colours.to_rgba(run.tension[frame][:, run.triangles].mean(axis=-1).ravel())
+    rgba[:, :3] *= bright[:, None]
+    middle = (faces.reshape(-1, 3).max(axis=0) + faces.reshape(-1, 3).min(axis=0)) / 2
+    reach = 0.52 * np.ptp(faces.reshape(-1, 3), axis=0).max()
+    for k, (name, (elevation, azimuth)) in enumerate({"": (24, -56), **SIDES}.items()):
+        axes = figure.add_axes((0.5 * (k % 2), 0.54 - 0.43 * (k // 2), 0.5, 0.43), projection="3d", proj_type="ortho")
+        axes.add_collection3d(Poly3DCollection(faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2))
+        axes.set(xlim=middle[0] + reach * np.array([-1, 1]), ylim=middle[1] + reach * np.array([-1, 1]))
+        axes.set(zlim=middle[2] + reach * np.array([-1, 1]))
+        axes.set_box_aspect((1, 1, 1), zoom=1.5)
+        axes.view_init(elevation, azimuth)
+        axes.set_axis_off()
+        axes.set_title(name or f"$t$ = {run.time[frame]:.4g}", fontsize=9, y=0.96)
+    bar = figure.add_axes((0.25, 0.085, 0.5, 0.02))
+    figure.colorbar(colours, cax=bar, orientation="horizontal", label=r"tension $\sigma$ (length$^3$/time$^2$)")
+
+
+def _plot_course(run: SurfaceRun, look: Look) -> Path:
+    """Draw energy, angle and axes of the first vesicle over time."""
+    series = run.series
+    axes = [(f"{name} axis", series[f"axis_{name}"]) for name in ("long", "middle", "short")]
+    panels = [
+        ("bending energy", "length^5/time^2", [("", series["energy_bending"])]),
+        ("angle / $\\pi$", "", [("", series["inclination"] / np.pi)]),
+        ("half axes", "length", axes),
+    ]
+    return draw_curves(series["time"], panels, "time $t$", run.folder / "course.png", look)
