@@ -110,7 +110,8 @@ static PetscErrorCode PrintSummary(FILE *f, const void *output) {
   SummaryPrintString(f, o->reason);
   fprintf(f, ",\n  \"last\": {");
   for (int c = 0; c < SPACE_COUNT; c++)
-    fprintf(f, "%s\"%s\": %.17g", c ? ", " : "", SpaceColumns[c], (double)o->record.last[c]);
+    fprintf(f, PetscIsNanReal(o->record.last[c]) ? "%s\"%s\": null" : "%s\"%s\": %.17g", c ? ", " : "", SpaceColumns[c],
+            (double)o->record.last[c]);
   fprintf(f, "},\n  \"totals\": {\"steps\": %d, \"coupled_its\": %d},\n  \"dim\": 3,\n  \"degree\": %d,\n",
           (int)o->space->state.step, (int)o->record.its, (int)o->space->sphere->p);
   fprintf(f, "  \"vesicles\": %d,\n  \"written\": {\"frames\": %d},\n  \"warnings\": [],\n",

@@ -121,6 +121,8 @@ PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
   r->last[SPACE_STEP] = s->state.step;
   r->last[SPACE_TIME] = s->state.t;
   r->last[SPACE_DT] = s->report.dt;
+  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->state.X));
+  r->last[SPACE_GAP] = s->cross ? s->cross->gap : NAN;
   r->last[SPACE_ITS] = s->report.its;
   r->last[SPACE_WALL] = s->report.seconds;
   r->its += s->report.its;
@@ -128,7 +130,8 @@ PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
     for (int c = 0; c < SPACE_COUNT; c++) {
       const PetscReal x = v ? r->each[(v - 1) * SPACE_COUNT + c] : r->last[c];
       if (v && kinds[c] == KIND_RUN) continue;
-      used += (size_t)snprintf(r->text + used, r->room - used, "%s%.17g", used ? "," : "", (double)x);
+      used += (size_t)snprintf(r->text + used, r->room - used, "%s", used ? "," : "");
+      if (!PetscIsNanReal(x)) used += (size_t)snprintf(r->text + used, r->room - used, "%.17g", (double)x);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,6 +31,7 @@
   COLUMN(TENSION_MAX, "tension_max", LARGEST)\
   COLUMN(NORMAL_SPEED, "normal_speed", WORST)\
   COLUMN(TAIL, "spectrum_tail", WORST)       \
+  COLUMN(GAP, "gap", RUN)                     \
   COLUMN(ITS, "coupled_its", RUN)            \
   COLUMN(WALL, "wall", RUN)
 /* clang-format on */
