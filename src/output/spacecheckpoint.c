@@ -2,7 +2,7 @@
 #include "output/spaceoutput.h"
 
 /* Write or read whole numbers and times; a run has had those that are read. */
-static PetscErrorCode MoveNumbers(SpaceOutput o, H5File *file, PetscBool write) {
+static PetscErrorCode SpaceMoveNumbers(SpaceOutput o, H5File *file, PetscBool write) {
   SpaceNumbers n = SpaceGetNumbers(o->space);
   PetscInt whole[] = {n.step, n.past, n.order, n.solved, o->scheduled, o->record.its};
   PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
@@ -36,11 +36,11 @@ static PetscErrorCode MoveNumbers(SpaceOutput o, H5File *file, PetscBool write) 
 }
 
 /* Write or read the numbers and the arrays [vesicles][each] of all ranks. */
-static PetscErrorCode MoveAll(SpaceOutput o, H5File *file, PetscBool write) {
+static PetscErrorCode SpaceMoveAll(SpaceOutput o, H5File *file, PetscBool write) {
   const VesicleShare *share = &o->space->share;
   SpaceArray array[SPACE_ARRAYS];
   PetscFunctionBeginUser;
-  PetscCall(MoveNumbers(o, file, write));
+  PetscCall(SpaceMoveNumbers(o, file, write));
   const PetscInt arrays = SpaceArrays(o->space, array);
   for (PetscInt k = 0; k < arrays; k++) {
     const PetscInt n = share->vesicles * array[k].each;
@@ -56,12 +56,12 @@ static PetscErrorCode MoveAll(SpaceOutput o, H5File *file, PetscBool write) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteCheckpoint(void *output, H5File *file) {
+static PetscErrorCode SpaceWriteCheckpoint(void *output, H5File *file) {
   const SpaceOutput o = output;
   PetscFunctionBeginUser;
   PetscCall(CheckpointPutScene(file, o->scene));
   H5PutText(file, "series_row", o->record.text);
-  PetscCall(MoveAll(o, file, PETSC_TRUE));
+  PetscCall(SpaceMoveAll(o, file, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,7 +74,7 @@ PetscErrorCode SpaceCheckpoint(SpaceOutput o) {
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(SeriesFlush(&o->series, PETSC_TRUE));
   PetscCall(AppendedFlush(&o->frames, PETSC_TRUE));
-  PetscCall(CheckpointStore(&o->checkpoint, o->space->state.step, WriteCheckpoint, o));
+  PetscCall(CheckpointStore(&o->checkpoint, o->space->state.step, SpaceWriteCheckpoint, o));
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
   o->checkpoint_seconds = PetscMax(o->checkpoint_seconds, end - start);
@@ -86,7 +86,7 @@ PetscErrorCode SpaceRestart(SpaceOutput o) {
   char *text;
   PetscFunctionBeginUser;
   PetscCall(RestartOpen(o->scene, &file));
-  PetscErrorCode error = MoveAll(o, &file, PETSC_FALSE);
+  PetscErrorCode error = SpaceMoveAll(o, &file, PETSC_FALSE);
   if (!error) error = H5GetText(&file, "series_row", &text);
   if (!error) error = RestartEntries(o->scene, &file);
   H5FileClose(&file);

@@ -3,7 +3,7 @@
 #include "output/spaceoutput.h"
 
 /* Harmonics at the points of a vesicle: the grid of degree p, then both poles. */
-static PetscErrorCode MakePoints(SpaceOutput o) {
+static PetscErrorCode SpaceFramesPoints(SpaceOutput o) {
   const SphereGrid *g = &o->space->sphere->shape.grid;
   PetscReal *theta, *phi;
   PetscFunctionBeginUser;
@@ -20,11 +20,11 @@ static PetscErrorCode MakePoints(SpaceOutput o) {
 }
 
 /* Triangles between neighbouring latitudes, and of the caps about the poles: 4 (p + 1)^2 a vesicle. */
-static PetscInt CountTriangles(SpaceOutput o) {
+static PetscInt SpaceFramesTriangles(SpaceOutput o) {
   return 2 * (o->points - 2);
 }
 
-static void ListTriangles(SpaceOutput o, PetscInt list[]) {
+static void SpaceFramesList(SpaceOutput o, PetscInt list[]) {
   const PetscInt p = o->space->sphere->p, around = 2 * p + 2, grid = o->points - 2;
   PetscInt n = 0;
   for (PetscInt v = 0; v < o->space->share.vesicles; v++)
@@ -39,9 +39,9 @@ static void ListTriangles(SpaceOutput o, PetscInt list[]) {
       }
 }
 
-static PetscErrorCode DescribeSpace(const void *context, H5File *f) {
+static PetscErrorCode SpaceFramesDescribe(const void *context, H5File *f) {
   const SpaceOutput o = (SpaceOutput)context;
-  const PetscInt triangles = CountTriangles(o) * o->space->share.vesicles, dim = 3;
+  const PetscInt triangles = SpaceFramesTriangles(o) * o->space->share.vesicles, dim = 3;
   PetscInt *list;
   PetscReal *each;
   PetscFunctionBeginUser;
@@ -54,9 +54,9 @@ static PetscErrorCode DescribeSpace(const void *context, H5File *f) {
   H5Put(f, "vesicle_bending", H5_REAL, o->space->share.vesicles, each);
   PetscCall(PetscFree(each));
   PetscCall(PetscMalloc1(3 * triangles, &list));
-  ListTriangles(o, list);
+  SpaceFramesList(o, list);
   H5PutRows(f, "/vesicle/triangles", H5_INT, triangles, 3, list);
-  for (PetscInt k = 0; k < triangles; k++) list[k] = 1 + k / CountTriangles(o);
+  for (PetscInt k = 0; k < triangles; k++) list[k] = 1 + k / SpaceFramesTriangles(o);
   H5PutRows(f, "/vesicle/number", H5_INT, triangles, 0, list);
   PetscCall(PetscFree(list));
   H5PutText(f, "version", PETVES_VERSION);
@@ -68,9 +68,9 @@ static PetscErrorCode DescribeSpace(const void *context, H5File *f) {
 PetscErrorCode SpaceFramesOpen(SpaceOutput o) {
   const Space s = o->space;
   AppendedKind kind = {
-      .name = "run.h5", .entries = "frames", .now = s->state.t, .context = o, .describe = DescribeSpace, .n = 4};
+      .name = "run.h5", .entries = "frames", .now = s->state.t, .context = o, .describe = SpaceFramesDescribe, .n = 4};
   PetscFunctionBeginUser;
-  PetscCall(MakePoints(o));
+  PetscCall(SpaceFramesPoints(o));
   const PetscInt all = s->share.vesicles * o->points;
   kind.series[0] = (AppendedSeries){"/vesicle/points", all, 3, .unit = "length"};
   kind.series[1] = (AppendedSeries){"/vesicle/velocity", all, 3, .unit = "length/time"};
@@ -85,7 +85,7 @@ PetscErrorCode SpaceFramesOpen(SpaceOutput o) {
 
 /* The next entry of a series: fields with coefficients own[own][fields][count], at all points [vesicles
  * points][fields]. */
-static PetscErrorCode SetField(SpaceOutput o, PetscInt series, PetscInt fields, const PetscReal own[]) {
+static PetscErrorCode SpaceFramesSet(SpaceOutput o, PetscInt series, PetscInt fields, const PetscReal own[]) {
   const Space s = o->space;
   PetscReal *c, *y;
   PetscFunctionBeginUser;
@@ -107,9 +107,9 @@ PetscErrorCode SpaceFramesWrite(SpaceOutput o, PetscBool scheduled) {
   PetscReal *all;
   PetscFunctionBeginUser;
   o->frames.count = o->scheduled; /* a frame that is not scheduled is replaced */
-  PetscCall(SetField(o, 0, 3, s->state.X));
-  PetscCall(SetField(o, 1, 3, s->state.U));
-  PetscCall(SetField(o, 2, 1, s->state.sigma));
+  PetscCall(SpaceFramesSet(o, 0, 3, s->state.X));
+  PetscCall(SpaceFramesSet(o, 1, 3, s->state.U));
+  PetscCall(SpaceFramesSet(o, 2, 1, s->state.sigma));
   PetscCall(PetscMalloc1(s->share.vesicles * s->size, &all));
   PetscCall(ShareGather(&s->share, s->size, s->state.X, all));
   AppendedSet(&o->frames, 3, all);
@@ -125,7 +125,7 @@ PetscErrorCode SpaceFramesWrite(SpaceOutput o, PetscBool scheduled) {
 void SpaceFramesPrint(const void *output, FILE *f, PetscInt t, PetscReal time) {
   const SpaceOutput o = (SpaceOutput)output;
   const PetscInt points = o->points * o->space->share.vesicles,
-                 triangles = CountTriangles(o) * o->space->share.vesicles;
+                 triangles = SpaceFramesTriangles(o) * o->space->share.vesicles;
   const XdmfSlab place = {"/vesicle/points", 8, t, points, 0, 3, 3},
                  velocity = {"/vesicle/velocity", 8, t, points, 0, 3, 3},
                  tension = {"/vesicle/tension", 8, t, points, 0, 1, 0};

@@ -1,11 +1,11 @@
 #include "output/spaceoutput.h"
 
-static void SetNextTime(SpaceOutput o) {
+static void SpaceOutputNextTime(SpaceOutput o) {
   const PetscReal every = o->scene->output.every, dt = o->space->setting.policy.base;
   o->next = StepDecimal(every * (PetscFloorReal((o->space->state.t + 1e-9 * dt) / every) + 1));
 }
 
-static PetscErrorCode PrintOptions(FILE *file, const void *scene) {
+static PetscErrorCode SpaceOutputOptions(FILE *file, const void *scene) {
   return SummaryPrintOptions((Scene)scene, NULL, file);
 }
 
@@ -36,7 +36,7 @@ PetscErrorCode SpaceOutputCreate(Scene scene, Space space, SpaceOutput *out) {
   if (o->go_on) PetscCall(XdmfWrite(&o->xdmf, &o->frames));
   PetscCall(SeriesOpen(&o->series));
   if (o->go_on) PetscCall(CheckpointAdopt(&o->checkpoint, restart));
-  PetscCall(FolderWriteText(&o->folder, "resolved.opts", PrintOptions, scene));
+  PetscCall(FolderWriteText(&o->folder, "resolved.opts", SpaceOutputOptions, scene));
   o->clock = ProgressBegin(space->state.t, scene->time.end);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,7 +62,7 @@ PetscErrorCode SpaceOutputDestroy(SpaceOutput *output) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteRow(SpaceOutput o) {
+static PetscErrorCode SpaceOutputRow(SpaceOutput o) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
   PetscCall(FolderCheckOwn(&o->folder));
@@ -72,7 +72,7 @@ static PetscErrorCode WriteRow(SpaceOutput o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteFrame(SpaceOutput o, PetscBool scheduled) {
+static PetscErrorCode SpaceOutputFrame(SpaceOutput o, PetscBool scheduled) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
   PetscCall(SpaceFramesWrite(o, scheduled));
@@ -84,9 +84,9 @@ static PetscErrorCode WriteFrame(SpaceOutput o, PetscBool scheduled) {
 
 PetscErrorCode SpaceOutputBegin(SpaceOutput o) {
   PetscFunctionBeginUser;
-  if (!*o->scene->output.restart) PetscCall(WriteRow(o));
-  if (!o->go_on) PetscCall(WriteFrame(o, PETSC_TRUE));
-  SetNextTime(o);
+  if (!*o->scene->output.restart) PetscCall(SpaceOutputRow(o));
+  if (!o->go_on) PetscCall(SpaceOutputFrame(o, PETSC_TRUE));
+  SpaceOutputNextTime(o);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,17 +94,17 @@ PetscErrorCode SpaceOutputStep(SpaceOutput o) {
   const SpaceState *q = &o->space->state;
   const PetscInt every = o->scene->output.checkpoint_every;
   PetscFunctionBeginUser;
-  PetscCall(WriteRow(o));
+  PetscCall(SpaceOutputRow(o));
   if (q->t >= o->next - 1e-9 * o->space->report.dt) {
-    PetscCall(WriteFrame(o, PETSC_TRUE));
-    SetNextTime(o);
+    PetscCall(SpaceOutputFrame(o, PETSC_TRUE));
+    SpaceOutputNextTime(o);
   }
   if (every && q->step % every == 0) PetscCall(SpaceCheckpoint(o));
   PetscCall(ProgressSay(&o->clock, o->scene->comm, q->step, q->t, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrintSummary(FILE *f, const void *output) {
+static PetscErrorCode SpaceOutputSummary(FILE *f, const void *output) {
   const SpaceOutput o = (SpaceOutput)output;
   fprintf(f, "{\n  \"reason\": ");
   SummaryPrintString(f, o->reason);
@@ -125,10 +125,10 @@ PetscErrorCode SpaceOutputEnd(SpaceOutput o, const char reason[], const char fai
   PetscFunctionBeginUser;
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(SpaceCheckpoint(o));
-  if (q->t > o->shown) PetscCall(WriteFrame(o, PETSC_FALSE));
+  if (q->t > o->shown) PetscCall(SpaceOutputFrame(o, PETSC_FALSE));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
   o->reason = failure ? failure : reason;
-  PetscCall(FolderWriteText(&o->folder, "summary.json", PrintSummary, o));
+  PetscCall(FolderWriteText(&o->folder, "summary.json", SpaceOutputSummary, o));
   PetscCall(ProgressSay(&o->clock, o->scene->comm, q->step, q->t, PETSC_TRUE));
   PetscCall(PetvesSay(o->scene->comm,
                       "\n%s at time %g after %" PetscInt_FMT " steps, %.1f iterations a step; files in %s\n",

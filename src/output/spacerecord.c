@@ -11,7 +11,7 @@ static const SpaceColumnKind kinds[SPACE_COUNT] = {SPACE_COLUMNS(SPACE_KIND)};
 #define ENTRY 32 /* characters of a name or a number, at most */
 
 /* Columns of single vesicles behind those of all. */
-static PetscInt OwnColumns(const SpaceRecord *r) {
+static PetscInt SpaceRecordOwn(const SpaceRecord *r) {
   return r->space->share.vesicles > 1 && r->space->share.vesicles <= SPACE_FEW ? r->space->share.vesicles : 0;
 }
 
@@ -19,10 +19,10 @@ PetscErrorCode SpaceRecordCreate(Space s, SpaceRecord *r) {
   size_t used = 0;
   PetscFunctionBeginUser;
   *r = (SpaceRecord){.space = s};
-  r->room = (size_t)(SPACE_COUNT * ENTRY * (1 + OwnColumns(r)));
+  r->room = (size_t)(SPACE_COUNT * ENTRY * (1 + SpaceRecordOwn(r)));
   PetscCall(PetscCalloc1(s->share.vesicles * SPACE_COUNT, &r->each));
   PetscCall(PetscCalloc2(r->room, &r->header, r->room, &r->text));
-  for (PetscInt v = 0; v <= OwnColumns(r); v++)
+  for (PetscInt v = 0; v <= SpaceRecordOwn(r); v++)
     for (int c = 0; c < SPACE_COUNT; c++) {
       char suffix[16] = "";
       if (v && kinds[c] == KIND_RUN) continue;
@@ -40,8 +40,8 @@ PetscErrorCode SpaceRecordDestroy(SpaceRecord *r) {
 }
 
 /* Velocity of the middle, rate of rotation about it in the x-y plane, largest normal speed, range of the tension. */
-static PetscErrorCode MeasureMotion(Surface at, const ShapeMoments *m, const PetscReal U[], const PetscReal sigma[],
-                                    PetscReal row[]) {
+static PetscErrorCode SpaceRecordMotion(Surface at, const ShapeMoments *m, const PetscReal U[], const PetscReal sigma[],
+                                        PetscReal row[]) {
   const PetscInt n = at->n, count = at->sphere->count;
   PetscReal *u, *tension, turned = 0, inertia = 0;
   PetscFunctionBeginUser;
@@ -68,7 +68,7 @@ static PetscErrorCode MeasureMotion(Surface at, const ShapeMoments *m, const Pet
 }
 
 /* The own columns of an own vesicle. */
-static PetscErrorCode MeasureVesicle(Space s, PetscInt v, PetscReal row[]) {
+static PetscErrorCode SpaceRecordVesicle(Space s, PetscInt v, PetscReal row[]) {
   const Vesicle3 vesicle = s->vesicle[v];
   const Surface at = vesicle->about;
   const PetscReal *X = s->state.X + v * s->size;
@@ -89,12 +89,12 @@ static PetscErrorCode MeasureVesicle(Space s, PetscInt v, PetscReal row[]) {
   row[SPACE_INCLINATION] = PetscAtan2Real(side * axis[1], side * axis[0]);
   row[SPACE_ELEVATION] = PetscAsinReal(PetscClipInterval(side * axis[2], -1, 1));
   row[SPACE_TAIL] = ShapeTail(s->sphere->p, X);
-  PetscCall(MeasureMotion(at, &m, s->state.U + v * s->size, s->state.sigma + v * s->count, row));
+  PetscCall(SpaceRecordMotion(at, &m, s->state.U + v * s->size, s->state.sigma + v * s->count, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A column of all vesicles. */
-static PetscReal Combine(const SpaceRecord *r, int c) {
+static PetscReal SpaceRecordCombine(const SpaceRecord *r, int c) {
   PetscReal value = r->each[c];
   for (PetscInt v = 1; v < r->space->share.vesicles; v++) {
     const PetscReal x = r->each[v * SPACE_COUNT + c];
@@ -113,11 +113,11 @@ PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(r->each, s->share.vesicles * SPACE_COUNT));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(MeasureVesicle(s, v, r->each + (s->share.first + v) * SPACE_COUNT));
+    PetscCall(SpaceRecordVesicle(s, v, r->each + (s->share.first + v) * SPACE_COUNT));
   PetscCall(PetscMPIIntCast(s->share.vesicles * SPACE_COUNT, &all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->each, all, MPIU_REAL, MPI_SUM, s->share.comm));
   for (int c = 0; c < SPACE_COUNT; c++)
-    if (kinds[c] != KIND_RUN) r->last[c] = Combine(r, c);
+    if (kinds[c] != KIND_RUN) r->last[c] = SpaceRecordCombine(r, c);
   r->last[SPACE_STEP] = s->state.step;
   r->last[SPACE_TIME] = s->state.t;
   r->last[SPACE_DT] = s->report.dt;
@@ -126,7 +126,7 @@ PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
   r->last[SPACE_ITS] = s->report.its;
   r->last[SPACE_WALL] = s->report.seconds;
   r->its += s->report.its;
-  for (PetscInt v = 0; v <= OwnColumns(r); v++)
+  for (PetscInt v = 0; v <= SpaceRecordOwn(r); v++)
     for (int c = 0; c < SPACE_COUNT; c++) {
       const PetscReal x = v ? r->each[(v - 1) * SPACE_COUNT + c] : r->last[c];
       if (v && kinds[c] == KIND_RUN) continue;

@@ -89,6 +89,7 @@ static void MiddleHeight(const void *scene, char value[OPTION_MAX_NAME]) {
 /* clang-format off */
 const OptionDefault scene_defaults[] = {
   {"-flow_type", HasFormula, "formula", NULL, "it is given by formulas", NULL},
+  {"-fluid_gravity", IsSpace, "0,0,0", NULL, "three dimensions", NULL},
   {"-flow_velocity", IsSpace, "1,0,0", NULL, "three dimensions", NULL},
   {"-vesicle_center", IsSpace, "0,0,0", NULL, "three dimensions", NULL},
   {"-flow_half_width", IsWalled, NULL, HalfHeight, "poiseuille, from wall to wall", "between walls in y: half their distance"},

@@ -25,7 +25,9 @@ PetscBool SceneByArea(Scene scene) {
 }
 
 PetscBool SceneHasGravity(Scene scene) {
-  return scene->gravity.g.v[0] != 0 || scene->gravity.g.v[1] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt d = 0; d < scene->gravity.g.n; d++)
+    if (scene->gravity.g.v[d] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 PetscReal SceneWeight(Scene scene, PetscInt vesicle, int dir) {

@@ -14,6 +14,8 @@ static const char *const in_space[] = {"-dim",
                                        "-flow_center_x",
                                        "-flow_center_y",
                                        "-fluid_viscosity",
+                                       "-fluid_gravity",
+                                       "-vesicle_density_difference",
                                        "-vesicle_count",
                                        "-vesicle_center",
                                        "-vesicle_bending",
@@ -59,7 +61,7 @@ const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
   return "-dim 2";
 }
 
-static PetscErrorCode CheckLists(Scene s) {
+static PetscErrorCode SceneCheckSpaceLists(Scene s) {
   const SceneSpace *own = &s->space;
   const PetscInt count = s->vesicles.count;
   const struct {
@@ -70,6 +72,7 @@ static PetscErrorCode CheckLists(Scene s) {
                {"-vesicle_center", s->vesicles.center.n, 3},
                {"-vesicle_half_axes", own->half_axes.n, 3},
                {"-vesicle_axis", own->axis.n, 3},
+               {"-vesicle_density_difference", s->gravity.density.n, 1},
                {"-vesicle_bending", s->membrane.stiffness.n, 1},
                {"-vesicle_viscosity_ratio", s->membrane.viscosity_ratio.n, 1}};
   PetscFunctionBeginUser;
@@ -79,7 +82,7 @@ static PetscErrorCode CheckLists(Scene s) {
 }
 
 /* The largest radius, and the bending modulus over nu R0^3 of the stiffest vesicle (1/time). */
-static void Scales(Scene s, PetscReal *R0, PetscReal *relaxation) {
+static void SceneSpaceScales(Scene s, PetscReal *R0, PetscReal *relaxation) {
   *R0 = *relaxation = 0;
   for (PetscInt v = 0; v < s->vesicles.count; v++) {
     PetscReal R = ListEntry(&s->space.radius, 1, v, 0);
@@ -95,7 +98,7 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   const PetscInt count = s->vesicles.count;
   PetscReal R0, relaxation;
   PetscFunctionBeginUser;
-  PetscCall(CheckLists(s));
+  PetscCall(SceneCheckSpaceLists(s));
   const PetscBool ratio = SceneHasContrast(s);
   const SceneRule rules[] = {
       {FlowIsCustom(&s->flow), "-flow_type {-flow_type}: of the plane; allowed with -dim 3: "
@@ -108,6 +111,7 @@ PetscErrorCode SceneResolveSpace(Draft s) {
            (SceneGiven(s, "-vesicle_radius") || SceneGiven(s, "-vesicle_reduced_volume")),
        "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both "
        "descriptions"},
+      {s->gravity.g.n != 3, "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
       {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number from 4 to 32"},
       {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
                            "-dim 3: 1, or one vesicle"},
@@ -118,7 +122,7 @@ PetscErrorCode SceneResolveSpace(Draft s) {
     PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
                               "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
-  Scales(s, &R0, &relaxation);
+  SceneSpaceScales(s, &R0, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * relaxation;
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * relaxation * R0;
   const PetscReal rate = s->flow.type == FLOW_AXIAL  ? s->flow.rate

@@ -54,7 +54,7 @@ typedef struct {
   PetscReal spacing; /* on the grid of degree p */
 } Outline;
 
-static PetscErrorCode MakeOutline(CrossLayer c, Surface s, PetscInt v, Outline *o) {
+static PetscErrorCode OutlineMake(CrossLayer c, Surface s, PetscInt v, Outline *o) {
   PetscFunctionBeginUser;
   PetscCall(SurfacePlace(s, c->X + v * 3 * c->sphere->count, PETSC_FALSE));
   PetscCall(PetscMalloc2(3 * s->n, &o->X, 3 * s->n, &o->normal));
@@ -73,7 +73,7 @@ static PetscErrorCode MakeOutline(CrossLayer c, Surface s, PetscInt v, Outline *
 
 /* The gap of two surfaces: at the nearest points of their fine grids, along the normal; negative where they overlap. Of
    surfaces so far apart that it does not matter, the gap of the balls around them. */
-static PetscReal GapOf(PetscInt n, const Outline *a, const Outline *b) {
+static PetscReal OutlineGap(PetscInt n, const Outline *a, const Outline *b) {
   PetscReal least = PETSC_MAX_REAL, apart = 0;
   PetscInt at[2] = {0, 0};
   for (int d = 0; d < 3; d++) apart += PetscSqr(a->center[d] - b->center[d]);
@@ -98,28 +98,28 @@ static PetscReal GapOf(PetscInt n, const Outline *a, const Outline *b) {
 }
 
 /* Which level a pair has: the first that is fine enough. */
-static PetscInt LevelOf(PetscInt p, PetscReal spacing, PetscReal gap) {
+static PetscInt CrossLevel(PetscInt p, PetscReal spacing, PetscReal gap) {
   PetscInt level = 0;
   while (level < CROSS_LEVELS - 1 && finer[level] * gap < FINENESS * spacing) level++;
   return level;
 }
 
-static PetscErrorCode FindPairs(CrossLayer c) {
+static PetscErrorCode CrossFindPairs(CrossLayer c) {
   const VesicleShare *s = &c->share;
   Outline *outline;
   Surface surface;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->vesicles, &outline));
   PetscCall(SurfaceCreate(c->sphere, &surface));
-  for (PetscInt v = 0; v < s->vesicles; v++) PetscCall(MakeOutline(c, surface, v, &outline[v]));
+  for (PetscInt v = 0; v < s->vesicles; v++) PetscCall(OutlineMake(c, surface, v, &outline[v]));
   c->pairs = 0;
   c->gap = PETSC_MAX_REAL;
   for (PetscInt v = s->first; v < s->first + s->own; v++)
     for (PetscInt w = 0; w < s->vesicles; w++) {
       if (w == v) continue;
-      const PetscReal gap = GapOf(surface->n, &outline[PetscMin(v, w)], &outline[PetscMax(v, w)]);
+      const PetscReal gap = OutlineGap(surface->n, &outline[PetscMin(v, w)], &outline[PetscMax(v, w)]);
       const PetscReal spacing = PetscMax(outline[v].spacing, outline[w].spacing);
-      c->pair[c->pairs++] = (CrossPair){v - s->first, w, LevelOf(c->sphere->p, spacing, gap)};
+      c->pair[c->pairs++] = (CrossPair){v - s->first, w, CrossLevel(c->sphere->p, spacing, gap)};
       if (gap >= c->gap) continue;
       c->gap = gap;
       c->nearest[0] = PetscMin(v, w);
@@ -132,7 +132,7 @@ static PetscErrorCode FindPairs(CrossLayer c) {
 }
 
 /* The least gap of all ranks, and whose it is. */
-static PetscErrorCode AgreeGap(CrossLayer c) {
+static PetscErrorCode CrossAgreeGap(CrossLayer c) {
   PetscReal nearest = -c->gap;
   PetscMPIInt whose;
   PetscFunctionBeginUser;
@@ -146,8 +146,8 @@ PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
   const PetscInt size = 3 * c->sphere->count;
   PetscFunctionBeginUser;
   PetscCall(ShareGather(&c->share, size, X, c->X));
-  PetscCall(FindPairs(c));
-  PetscCall(AgreeGap(c));
+  PetscCall(CrossFindPairs(c));
+  PetscCall(CrossAgreeGap(c));
   for (int level = 0; level < CROSS_LEVELS; level++) PetscCall(PetscFree(c->points[level]));
   for (PetscInt k = 0; k < c->pairs; k++) {
     const PetscInt level = c->pair[k].level;
@@ -162,7 +162,8 @@ PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
 
 /* u[3][n] += Stokeslets of the forces f[3][n] at Y[3][n], at the points X[3][n]; 8 pi nu times the velocity. The last
    four sources overlap others, of which they take nothing. */
-static void AddStokeslets(PetscInt n, const PetscReal X[], const PetscReal Y[], const PetscReal f[], PetscReal u[]) {
+static void CrossAddStokeslets(PetscInt n, const PetscReal X[], const PetscReal Y[], const PetscReal f[],
+                               PetscReal u[]) {
   const Lanes order = {0, 1, 2, 3};
   for (PetscInt i = 0; i < n; i++) {
     Lanes sum[3] = {{0}, {0}, {0}};
@@ -184,7 +185,7 @@ static void AddStokeslets(PetscInt n, const PetscReal X[], const PetscReal Y[], 
 }
 
 /* U += what the pairs of one level do. */
-static PetscErrorCode AddLevel(CrossLayer c, PetscInt level, const PetscReal F[], PetscReal U[]) {
+static PetscErrorCode CrossAddLevel(CrossLayer c, PetscInt level, const PetscReal F[], PetscReal U[]) {
   const SphereTable *table = &c->table[level];
   const PetscInt n = table->grid.n, count = c->sphere->count, size = 3 * count;
   PetscReal *f, *u, *part;
@@ -199,7 +200,7 @@ static PetscErrorCode AddLevel(CrossLayer c, PetscInt level, const PetscReal F[]
     PetscCall(PetscArrayzero(u, 3 * n));
     for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
       if (pair->own != v || pair->level != level) continue;
-      AddStokeslets(n, X, c->points[level] + pair->other * 3 * n, f + pair->other * 3 * n, u);
+      CrossAddStokeslets(n, X, c->points[level] + pair->other * 3 * n, f + pair->other * 3 * n, u);
       any = PETSC_TRUE;
     }
     if (any) PetscCall(SphereTableProject(table, count, 3, u, part));
@@ -216,7 +217,7 @@ PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
   PetscCall(PetscMalloc1(c->share.vesicles * size, &all));
   PetscCall(ShareGather(&c->share, size, F, all));
   for (PetscInt level = 0; level < CROSS_LEVELS; level++)
-    if (c->points[level]) PetscCall(AddLevel(c, level, all, U));
+    if (c->points[level]) PetscCall(CrossAddLevel(c, level, all, U));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

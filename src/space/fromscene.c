@@ -6,7 +6,7 @@ static void SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscRea
 }
 
 /* Coefficients of a vesicle's first shape. */
-static void FirstShape(Scene s, PetscInt v, PetscReal X[]) {
+static void SceneFirstShape(Scene s, PetscInt v, PetscReal X[]) {
   const SceneSpace *own = &s->space;
   PetscReal axes[3], axis[3], center[3];
   for (int d = 0; d < 3; d++) {
@@ -41,7 +41,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   PetscCall(SphereCreate(s->space.degree, &sphere));
   PetscCall(SurfaceCreate(sphere, &surface));
   for (PetscInt v = 0; v < count; v++) {
-    FirstShape(s, v, X + v * size);
+    SceneFirstShape(s, v, X + v * size);
     PetscCall(SurfacePlace(surface, X + v * size, PETSC_FALSE));
     material[v] = (Vesicle3Setting){.nu = s->fluid.nu,
                                     .bending = ListEntry(&s->membrane.stiffness, 1, v, 0),
@@ -49,6 +49,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                     .ratio = SceneViscosityRatio(s, v),
                                     .area = surface->area,
                                     .volume = surface->volume};
+    for (int d = 0; d < 3; d++) material[v].weight[d] = SceneWeight(s, v, d);
   }
   PetscCall(SurfaceDestroy(&surface));
   PetscCall(SphereDestroy(&sphere));

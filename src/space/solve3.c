@@ -13,7 +13,7 @@ PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
 }
 
 /* y = what the rows make of x by U = -M C x. */
-static PetscErrorCode MultSpace(Mat A, Vec X, Vec Y) {
+static PetscErrorCode SpaceMult(Mat A, Vec X, Vec Y) {
   Space s;
   const PetscScalar *x;
   PetscScalar *y;
@@ -32,7 +32,7 @@ static PetscErrorCode MultSpace(Mat A, Vec X, Vec Y) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ApplyFactors(PC pc, Vec r, Vec z) {
+static PetscErrorCode SpaceApplyFactors(PC pc, Vec r, Vec z) {
   const PetscInt each = 16;
   Space s;
   PetscScalar *x;
@@ -53,7 +53,7 @@ PetscErrorCode SpaceSolverCreate(Space s) {
   PetscFunctionBeginUser;
   PetscCall(
       MatCreateShell(s->share.comm, s->share.own * n, s->share.own * n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
-  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))MultSpace));
+  PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))SpaceMult));
   PetscCall(MatCreateVecs(s->A, &s->x, &s->b));
   PetscCall(PetscMalloc2(s->share.own * n * n, &s->factor, s->share.own * n, &s->pivot));
   PetscCall(PetscMalloc2(s->share.own * s->size, &s->made.X, s->share.own * s->count, &s->made.sigma));
@@ -64,7 +64,7 @@ PetscErrorCode SpaceSolverCreate(Space s) {
   PetscCall(KSPSetOperators(s->ksp, s->A, s->A));
   PetscCall(KSPGetPC(s->ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetApply(pc, ApplyFactors));
+  PetscCall(PCShellSetApply(pc, SpaceApplyFactors));
   PetscCall(PCShellSetContext(pc, s));
   PetscCall(PCShellSetName(pc, "dense problem of each vesicle"));
   PetscCall(KSPSetInitialGuessNonzero(s->ksp, PETSC_TRUE));
@@ -85,7 +85,7 @@ PetscErrorCode SpaceSolverDestroy(Space s) {
 }
 
 /* Factors of the vesicles where they are placed; report.failure when one is singular. */
-static PetscErrorCode MakeFactors(Space s) {
+static PetscErrorCode SpaceMakeFactors(Space s) {
   const PetscInt n = 4 * s->count;
   int good = 1;
   PetscFunctionBeginUser;
@@ -101,10 +101,10 @@ static PetscErrorCode MakeFactors(Space s) {
 }
 
 /* New factors where the old ones have cost as much. */
-static PetscErrorCode RenewFactors(Space s, PetscReal a0) {
+static PetscErrorCode SpaceRenewFactors(Space s, PetscReal a0) {
   PetscFunctionBeginUser;
   if (!AgeIsOver(&s->age, a0, STEP_RATIO, RENEWAL * (PetscReal)s->count)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeFactors(s));
+  PetscCall(SpaceMakeFactors(s));
   AgeRenew(&s->age, a0);
   s->made.a0 = a0;
   PetscCall(PetscArraycpy(s->made.X, s->work.Xstar, s->share.own * s->size));
@@ -121,12 +121,12 @@ PetscErrorCode SpaceRecall(Space s) {
     PetscCall(Vesicle3Place(s->vesicle[v], X, s->made.sigma + v * s->count, &done));
     PetscCall(Vesicle3Linearise(s->vesicle[v], s->made.a0, X, X, X));
   }
-  PetscCall(MakeFactors(s));
+  PetscCall(SpaceMakeFactors(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* b = targets - rows of u_inf - M known. V becomes this velocity. */
-static PetscErrorCode RightHandSide(Space s) {
+static PetscErrorCode SpaceRightHandSide(Space s) {
   const PetscInt n = 4 * s->count;
   PetscScalar *b;
   PetscReal *y;
@@ -150,7 +150,7 @@ static PetscErrorCode RightHandSide(Space s) {
 }
 
 /* V = u_inf - M (known + C x). */
-static PetscErrorCode Velocities(Space s) {
+static PetscErrorCode SpaceVelocities(Space s) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->x, &x));
@@ -171,9 +171,9 @@ PetscErrorCode SpaceSolve(Space s, PetscInt pass) {
   PetscFunctionBeginUser;
   if (s->share.own) a0 = s->vesicle[0]->a0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &a0, 1, MPIU_REAL, MPI_MAX, s->share.comm));
-  if (!pass) PetscCall(RenewFactors(s, a0));
+  if (!pass) PetscCall(SpaceRenewFactors(s, a0));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RightHandSide(s));
+  PetscCall(SpaceRightHandSide(s));
   PetscCall(KSPSolve(s->ksp, s->b, s->x));
   PetscCall(KSPGetConvergedReason(s->ksp, &why));
   PetscCall(KSPGetIterationNumber(s->ksp, &its));
@@ -185,6 +185,6 @@ PetscErrorCode SpaceSolve(Space s, PetscInt pass) {
                             "the solve with prefix coupled_ failed: %s after %" PetscInt_FMT " iterations, residual %g",
                             KSPConvergedReasons[why], its, (double)residual));
   else
-    PetscCall(Velocities(s));
+    PetscCall(SpaceVelocities(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

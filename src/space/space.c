@@ -4,14 +4,14 @@
 #define SMOOTH 0.7 /* least gain of a prediction by three states over that by two for order 3 */
 #define PARTS 7    /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
 
-static PetscErrorCode StateAllocate(Space s, SpaceState *q) {
+static PetscErrorCode SpaceStateCreate(Space s, SpaceState *q) {
   PetscFunctionBeginUser;
   PetscCall(
       PetscCalloc3(s->share.own * s->size, &q->X, s->share.own * s->size, &q->U, s->share.own * s->count, &q->sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode StateFree(SpaceState *q) {
+static PetscErrorCode SpaceStateDestroy(SpaceState *q) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(q->X, q->U, q->sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,9 +36,9 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(PetscCalloc1(s->share.own, &s->vesicle));
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(Vesicle3Create(s->sphere, &material[s->share.first + v], &s->vesicle[v]));
-  PetscCall(StateAllocate(s, &s->state));
-  PetscCall(StateAllocate(s, &s->start));
-  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateAllocate(s, &s->old[j]));
+  PetscCall(SpaceStateCreate(s, &s->state));
+  PetscCall(SpaceStateCreate(s, &s->start));
+  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateCreate(s, &s->old[j]));
   const PetscInt n = s->share.own * s->size;
   PetscCall(PetscMalloc6(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
                          &s->work.V));
@@ -57,9 +57,9 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(CrossLayerDestroy(&s->cross));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
-  PetscCall(StateFree(&s->state));
-  PetscCall(StateFree(&s->start));
-  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(StateFree(&s->old[j]));
+  PetscCall(SpaceStateDestroy(&s->state));
+  PetscCall(SpaceStateDestroy(&s->start));
+  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateDestroy(&s->old[j]));
   PetscCall(PetscFree6(s->work.Xstar, s->work.Xhat, s->work.Y, s->work.background, s->work.F, s->work.V));
   PetscCall(SphereDestroy(&s->sphere));
   PetscCall(PetscFree(*space));
@@ -67,7 +67,7 @@ PetscErrorCode SpaceDestroy(Space *space) {
 }
 
 /* The steps that led to the states, the one to be made first. */
-static void StepsBefore(Space s, PetscReal dt, PetscReal step[BDF_STATES]) {
+static void SpaceStepsBefore(Space s, PetscReal dt, PetscReal step[BDF_STATES]) {
   (void)PetscArrayzero(step, BDF_STATES);
   step[0] = dt;
   step[1] = s->state.dt_last;
@@ -75,20 +75,20 @@ static void StepsBefore(Space s, PetscReal dt, PetscReal step[BDF_STATES]) {
 }
 
 /* The formula of the next step, of the plan's order as far as states are known. */
-static BDF NextFormula(Space s, PetscReal dt) {
+static BDF SpaceFormula(Space s, PetscReal dt) {
   PetscReal step[BDF_STATES];
-  StepsBefore(s, dt, step);
+  SpaceStepsBefore(s, dt, step);
   return BDFCoefficients(PetscMin(s->plan.order, s->past + 1), step);
 }
 
 /* Order 3 after a step of size dt that has led to Y, where three states would have told Y better than two. */
-static PetscErrorCode ChooseOrder(Space s, PetscReal dt) {
+static PetscErrorCode SpaceChooseOrder(Space s, PetscReal dt) {
   const PetscReal *X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
   PetscReal step[BDF_STATES], star[BDF_STATES], miss[2] = {0, 0};
   PetscFunctionBeginUser;
   s->plan.order = PetscMin(s->setting.order, 2);
   if (s->setting.order < 3 || s->past < BDF_MOST - 1) PetscFunctionReturn(PETSC_SUCCESS);
-  StepsBefore(s, dt, step);
+  SpaceStepsBefore(s, dt, step);
   for (int q = 0; q < 2; q++) {
     BDFExtrapolation(2 + q, step, star);
     for (PetscInt k = 0; k < s->share.own * s->size; k++) {
@@ -103,7 +103,7 @@ static PetscErrorCode ChooseOrder(Space s, PetscReal dt) {
 }
 
 /* X*, Xhat; surfaces and u_inf at X* at time t. */
-static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
+static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
   const PetscReal *X[BDF_MOST] = {s->state.X};
   int good = 1;
   PetscFunctionBeginUser;
@@ -141,7 +141,7 @@ static PetscErrorCode Place(Space s, const BDF *b, PetscReal t) {
 }
 
 /* First guess of (Q, sigma): Q that leads to X*, the tension of the last states extrapolated. */
-static PetscErrorCode Guess(Space s, const BDF *b) {
+static PetscErrorCode SpaceGuess(Space s, const BDF *b) {
   const PetscReal *sigma[BDF_MOST] = {s->state.sigma};
   PetscScalar *x;
   PetscFunctionBeginUser;
@@ -161,7 +161,7 @@ static PetscErrorCode Guess(Space s, const BDF *b) {
 }
 
 /* Y = Xhat + Q/a0; the largest root mean square of its change, over the radius. */
-static PetscErrorCode Iterate(Space s, PetscReal a0, PetscReal *moved) {
+static PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   *moved = 0;
@@ -183,13 +183,13 @@ static PetscErrorCode Iterate(Space s, PetscReal a0, PetscReal *moved) {
 }
 
 /* A step of size dt as far as Y, V and x; the state is as it was. */
-static PetscErrorCode Attempt(Space s, PetscReal dt) {
-  const BDF b = NextFormula(s, dt);
+static PetscErrorCode SpaceAttempt(Space s, PetscReal dt) {
+  const BDF b = SpaceFormula(s, dt);
   PetscReal moved;
   PetscFunctionBeginUser;
-  PetscCall(Place(s, &b, s->state.t + dt));
+  PetscCall(SpacePlace(s, &b, s->state.t + dt));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Guess(s, &b));
+  PetscCall(SpaceGuess(s, &b));
   PetscCall(PetscArraycpy(s->work.Y, s->work.Xstar, s->share.own * s->size));
   for (PetscInt pass = 0; pass < s->setting.newton && !*s->report.failure; pass++) {
     for (PetscInt v = 0; v < s->share.own; v++) {
@@ -198,7 +198,7 @@ static PetscErrorCode Attempt(Space s, PetscReal dt) {
     }
     PetscCall(SpaceSolve(s, pass));
     if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(Iterate(s, b.a0, &moved));
+    PetscCall(SpaceIterate(s, b.a0, &moved));
     s->report.estimate = pass ? s->report.estimate : moved;
   }
   if (PetscIsInfOrNanReal(moved))
@@ -207,7 +207,7 @@ static PetscErrorCode Attempt(Space s, PetscReal dt) {
 }
 
 /* U and sigma of the attempt become the state's. */
-static PetscErrorCode TakeSolution(Space s) {
+static PetscErrorCode SpaceTakeSolution(Space s) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(s->state.U, s->work.V, s->share.own * s->size));
@@ -220,10 +220,10 @@ static PetscErrorCode TakeSolution(Space s) {
 }
 
 /* The attempt becomes the state. */
-static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
+static PetscErrorCode SpaceAccept(Space s, PetscReal dt, PetscReal t) {
   const SpaceState last = s->old[BDF_MOST - 2];
   PetscFunctionBeginUser;
-  PetscCall(ChooseOrder(s, dt));
+  PetscCall(SpaceChooseOrder(s, dt));
   for (int j = BDF_MOST - 2; j > 0; j--) s->old[j] = s->old[j - 1];
   s->old[0] = s->state;
   s->state = last; /* its arrays */
@@ -232,7 +232,7 @@ static PetscErrorCode Accept(Space s, PetscReal dt, PetscReal t) {
   s->state.step = s->old[0].step;
   s->past = PetscMin(s->past + 1, BDF_MOST - 1);
   PetscCall(PetscArraycpy(s->state.X, s->work.Y, s->share.own * s->size));
-  PetscCall(TakeSolution(s));
+  PetscCall(SpaceTakeSolution(s));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3KeepVolume(s->vesicle[v], s->state.X + v * s->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -242,8 +242,8 @@ PetscErrorCode SpaceStart(Space s) {
   if (s->state.step || s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
-  PetscCall(Attempt(s, STILL * s->setting.policy.base));
-  if (!*s->report.failure) PetscCall(TakeSolution(s));
+  PetscCall(SpaceAttempt(s, STILL * s->setting.policy.base));
+  if (!*s->report.failure) PetscCall(SpaceTakeSolution(s));
   s->age = AgeNone(); /* factors of so small a step serve no other */
   s->made.a0 = 0;
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
@@ -251,7 +251,7 @@ PetscErrorCode SpaceStart(Space s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CopyState(Space s, const SpaceState *from, SpaceState *to) {
+static PetscErrorCode SpaceStateCopy(Space s, const SpaceState *from, SpaceState *to) {
   SpaceState copy = *from;
   PetscFunctionBeginUser;
   copy.X = to->X;
@@ -265,22 +265,22 @@ static PetscErrorCode CopyState(Space s, const SpaceState *from, SpaceState *to)
 }
 
 /* The step in its parts. */
-static PetscErrorCode StepInParts(Space s, PetscReal dt, PetscReal end) {
+static PetscErrorCode SpaceStepInParts(Space s, PetscReal dt, PetscReal end) {
   const PetscInt parts = s->state.step ? 1 : PARTS;
   const PetscReal t = s->state.t;
   PetscReal done = 0;
   PetscFunctionBeginUser;
-  if (parts > 1) PetscCall(CopyState(s, &s->state, &s->start));
+  if (parts > 1) PetscCall(SpaceStateCopy(s, &s->state, &s->start));
   for (PetscInt part = 0; part < parts; part++) {
     const PetscReal share = parts == 1 ? dt : dt / (PetscReal)(1 << (part ? parts - part : parts - 1));
-    PetscCall(Attempt(s, share));
+    PetscCall(SpaceAttempt(s, share));
     if (*s->report.failure && part) {
-      PetscCall(CopyState(s, &s->start, &s->state));
+      PetscCall(SpaceStateCopy(s, &s->start, &s->state));
       s->past = 0;
     }
     if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
     done += share;
-    PetscCall(Accept(s, share, part == parts - 1 ? end : t + done));
+    PetscCall(SpaceAccept(s, share, part == parts - 1 ? end : t + done));
   }
   s->state.step++;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -294,7 +294,7 @@ PetscErrorCode SpaceStep(Space s, PetscReal until) {
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
   s->report.dt = dt;
-  PetscCall(StepInParts(s, dt, StepTime(&s->setting.policy, t, dt, until)));
+  PetscCall(SpaceStepInParts(s, dt, StepTime(&s->setting.policy, t, dt, until)));
   if (*s->report.failure) {
     const size_t used = strlen(s->report.failure);
     PetscCall(PetscSNPrintf(s->report.failure + used, PETVES_MAX_MESSAGE - used,

@@ -38,7 +38,7 @@ PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle) {
 }
 
 /* M = [(1 + ratio)/2 + (1 - ratio) D]^-1 S, S the single layer. */
-static PetscErrorCode PlaceMobility(Vesicle3 v, const PetscReal Xstar[], PetscBool *done) {
+static PetscErrorCode Vesicle3PlaceMobility(Vesicle3 v, const PetscReal Xstar[], PetscBool *done) {
   const PetscReal ratio = v->setting.ratio;
   PetscFunctionBeginUser;
   *done = PETSC_TRUE;
@@ -57,7 +57,7 @@ PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscRea
   PetscReal *N, *A;
   PetscFunctionBeginUser;
   PetscCall(SurfacePlace(v->at, Xstar, PETSC_TRUE));
-  PetscCall(PlaceMobility(v, Xstar, done));
+  PetscCall(Vesicle3PlaceMobility(v, Xstar, done));
   PetscCall(PetscMalloc2(size * size, &N, size * count, &A));
   PetscCall(SurfaceNormals(v->at, N));
   PetscCall(SurfaceAreaRows(v->at, A));
@@ -70,6 +70,24 @@ PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscRea
   }
   PetscCall(PetscFree2(N, A));
   PetscCall(SurfacePull(v->at, sigma, v->pull));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* known -= (w.X) n J. */
+static PetscErrorCode Vesicle3Weigh(Vesicle3 v) {
+  const Surface s = v->at;
+  const PetscReal *w = v->setting.weight;
+  PetscReal *f, *c;
+  PetscFunctionBeginUser;
+  if (w[0] == 0 && w[1] == 0 && w[2] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(3 * s->n, &f, v->size, &c));
+  for (PetscInt i = 0; i < s->n; i++) {
+    const PetscReal *X = s->D[HARMONIC] + i, pressure = w[0] * X[0] + w[1] * X[s->n] + w[2] * X[2 * s->n];
+    for (int d = 0; d < 3; d++) f[d * s->n + i] = pressure * s->J[i] * s->normal[d * s->n + i];
+  }
+  PetscCall(SphereTableProject(&s->sphere->fine, v->count, 3, f, c));
+  for (PetscInt k = 0; k < v->size; k++) v->known[k] -= c[k];
+  PetscCall(PetscFree2(f, c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,6 +110,7 @@ PetscErrorCode Vesicle3Linearise(Vesicle3 v, PetscReal a0, const PetscReal Xhat[
   for (PetscInt k = 0; k < size; k++) change[k] = Xhat[k] - Xstar[k];
   PetscCall(DenseMultAdd(PETSC_FALSE, size, size, 1, v->pull, change, v->known));
   PetscCall(PetscFree(change));
+  PetscCall(Vesicle3Weigh(v));
   for (PetscInt k = 0; k < size * size; k++) v->columns[k] = (kappa * v->columns[k] + v->pull[k]) / a0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -109,7 +128,7 @@ PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscReal U[]) {
 }
 
 /* y[size] += scale (1 - P_n) w. */
-static PetscErrorCode AddTangential(Vesicle3 v, PetscReal scale, const PetscReal w[], PetscReal y[]) {
+static PetscErrorCode Vesicle3AddTangential(Vesicle3 v, PetscReal scale, const PetscReal w[], PetscReal y[]) {
   const DenseView minus_normals = {.a = v->rows, .rows = v->size, .columns = v->size, .apart = 4 * v->count};
   PetscReal *scaled;
   PetscFunctionBeginUser;
@@ -124,7 +143,7 @@ static PetscErrorCode AddTangential(Vesicle3 v, PetscReal scale, const PetscReal
 }
 
 /* y = Lambda gamma x of labels. */
-static void CleanLabels(Vesicle3 v, const PetscReal x[], PetscReal y[]) {
+static void Vesicle3CleanLabels(Vesicle3 v, const PetscReal x[], PetscReal y[]) {
   for (PetscInt k = 0; k < v->size; k++) y[k] = v->clean[k] * x[k];
 }
 
@@ -134,16 +153,16 @@ PetscErrorCode Vesicle3Rows(Vesicle3 v, const PetscReal x[], const PetscReal U[]
   PetscCall(DenseProduct(PETSC_FALSE, 4 * v->count, 1, v->size, v->rows, U, y));
   if (!x) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(v->size, &cleaned));
-  CleanLabels(v, x, cleaned);
+  Vesicle3CleanLabels(v, x, cleaned);
   for (PetscInt k = 0; k < v->size; k++) y[k] += x[k];
-  PetscCall(AddTangential(v, 1 / v->a0, cleaned, y));
+  PetscCall(Vesicle3AddTangential(v, 1 / v->a0, cleaned, y));
   PetscCall(PetscFree(cleaned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Rigid motion q, translation and rotation about the middle X0 of the surface, whose normal part is nearest to that of
    U in the mean square. Motions that hardly move the shape, as turns of a surface of revolution, are left out. */
-static PetscErrorCode FitRigid(Vesicle3 v, const PetscReal U[], PetscReal X0[3], PetscReal q[6]) {
+static PetscErrorCode Vesicle3FitRigid(Vesicle3 v, const PetscReal U[], PetscReal X0[3], PetscReal q[6]) {
   const Surface s = v->at;
   const PetscInt n = s->n;
   PetscReal *u, D[36] = {0}, l[6], b[6] = {0};
@@ -182,11 +201,11 @@ static PetscErrorCode FitRigid(Vesicle3 v, const PetscReal U[], PetscReal X0[3],
 }
 
 /* w[size], the rigid part of the velocity U. */
-static PetscErrorCode RigidPart(Vesicle3 v, const PetscReal Xstar[], const PetscReal U[], PetscReal w[]) {
+static PetscErrorCode Vesicle3RigidPart(Vesicle3 v, const PetscReal Xstar[], const PetscReal U[], PetscReal w[]) {
   const PetscReal one = PetscSqrtReal(4 * PETSC_PI); /* coefficient of the constant 1 */
   PetscReal X0[3], q[6];
   PetscFunctionBeginUser;
-  PetscCall(FitRigid(v, U, X0, q));
+  PetscCall(Vesicle3FitRigid(v, U, X0, q));
   for (int d = 0; d < 3; d++) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
     for (PetscInt k = 0; k < v->count; k++)
@@ -202,10 +221,10 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(v->size, &w));
   PetscCall(PetscArrayzero(b, 4 * v->count));
-  CleanLabels(v, Xhat, w);
-  PetscCall(AddTangential(v, -1, w, b));
-  if (U) PetscCall(RigidPart(v, Xstar, U, w));
-  if (U) PetscCall(AddTangential(v, 1, w, b));
+  Vesicle3CleanLabels(v, Xhat, w);
+  PetscCall(Vesicle3AddTangential(v, -1, w, b));
+  if (U) PetscCall(Vesicle3RigidPart(v, Xstar, U, w));
+  if (U) PetscCall(Vesicle3AddTangential(v, 1, w, b));
   for (PetscInt k = 0; k < v->size; k++) grown += v->columns[v->size * v->size + k] * (Xhat[k] - Xstar[k]);
   b[v->size] = v->a0 * (grown - (v->setting.area - v->at->area) / PetscSqrtReal(4 * PETSC_PI));
   PetscCall(PetscFree(w));

@@ -6,13 +6,14 @@
    iterate of a second Newton step), g and K_b the gradient and Gauss-Newton matrix of the bending energy there, K_s the
    pull of the last tension, and A the area rows,
 
-       F = known + C x,   C = [(kappa K_b + K_s)/a0, A^T],   known = kappa g + kappa K_b (Xhat - Y) + K_s (Xhat - X*),
+       F = known + C x,   C = [(kappa K_b + K_s)/a0, A^T],
+       known = kappa g + kappa K_b (Xhat - Y) + K_s (Xhat - X*) - (w.X*) n J,
        U = u_inf - M F,                                      M the mobility of all vesicles,
        Q + (gamma/a0) P_t Lambda Q - P_n U = P_t rigid - gamma P_t Lambda Xhat,      A U = r,
 
-   F the membrane's resistance, minus its force on the fluid; P_n = n n., P_t = 1 - P_n. Labels follow the normal
-   motion; tangentially they go with the rigid part of the last normal velocity, and Lambda = (l/p)^4 draws them to a
-   clean spectrum at the rate gamma. r is zero but for the target of the whole area. */
+   F the membrane's resistance, minus its force on the fluid, w the weight of a volume; P_n = n n., P_t = 1 - P_n.
+   Labels follow the normal motion; tangentially they go with the rigid part of the last normal velocity, and Lambda =
+   (l/p)^4 draws them to a clean spectrum at the rate gamma. r is zero but for the target of the whole area. */
 #pragma once
 #include "sphere/surface.h"
 
@@ -23,6 +24,7 @@ typedef struct {
   PetscReal label_rate; /* gamma (1/time) */
   PetscReal ratio;      /* viscosity inside over outside */
   PetscReal area, volume;
+  PetscReal weight[3]; /* difference of the densities over that outside, times gravity (length/time^2) */
 } Vesicle3Setting;
 
 typedef struct _p_Vesicle3 *Vesicle3;

@@ -28,8 +28,8 @@ static void LegendreAt(PetscInt p, PetscReal x, PetscReal s, PetscReal P[]) {
 
 /* The entries of one point for l and m >= 0. at[part]: where Y_(l, 0) of this point is; apart: numbers from one k to
    the next. A: P_lm and its first and second derivative in theta. */
-static void SetEntries(PetscInt m, PetscReal phi, const PetscReal A[3], PetscInt parts, PetscReal *const at[],
-                       PetscInt apart) {
+static void HarmonicsSet(PetscInt m, PetscReal phi, const PetscReal A[3], PetscInt parts, PetscReal *const at[],
+                         PetscInt apart) {
   const PetscReal scale = m ? PETSC_SQRT2 : 1, c = scale * PetscCosReal(m * phi), s = scale * PetscSinReal(m * phi);
   for (int side = 0; side <= (m > 0); side++) {
     const PetscReal T = side ? s : c, dT = side ? m * c : -m * s;
@@ -59,7 +59,7 @@ PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], cons
           A[2] = -x / s * A[1] + (m * m / (s * s) - l * (l + 1)) * A[0];
         }
         for (PetscInt part = 0; part < parts; part++) at[part] = table + (part * count + l * l + l) * n + i;
-        SetEntries(m, phi[i], A, parts, at, n);
+        HarmonicsSet(m, phi[i], A, parts, at, n);
       }
   }
   PetscCall(PetscFree(P));

@@ -47,8 +47,8 @@ typedef struct {
 } LatitudeWork;
 
 /* y[around][3][n]: fields with coefficients c[3] of the turned table's degree, at the points of all turns. */
-static PetscErrorCode TurnedValues(const TurnedGrids *t, PetscInt latitude, const PetscReal c[], LatitudeWork *w,
-                                   PetscReal y[]) {
+static PetscErrorCode LayerTurnedValues(const TurnedGrids *t, PetscInt latitude, const PetscReal c[], LatitudeWork *w,
+                                        PetscReal y[]) {
   const PetscInt count = HarmonicsCount(t->p);
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < w->around; j++)
@@ -80,7 +80,7 @@ static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt la
 }
 
 /* Coefficients of degree 2p of n dA/domega, a polynomial of that degree. */
-static PetscErrorCode NormalCoefficients(Sphere s, const PetscReal c[], PetscReal m[]) {
+static PetscErrorCode LayerNormals(Sphere s, const PetscReal c[], PetscReal m[]) {
   const PetscInt n = s->fine.grid.n;
   SphereTable table;
   PetscReal *T, *P, *a;
@@ -110,11 +110,11 @@ static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const Pets
   PetscCall(PetscMalloc4(3 * s->shape.grid.n, &at, 3 * many, &m, 3 * around * many, &w.turned, 3 * around * n, &w.X));
   PetscCall(PetscMalloc2(TENSOR_COUNT * around * n, &w.G, TENSOR_COUNT * around * s->count, &w.rows));
   if (kernel->normal) PetscCall(PetscMalloc1(3 * around * n, &w.normal));
-  if (kernel->normal) PetscCall(NormalCoefficients(s, c, m));
+  if (kernel->normal) PetscCall(LayerNormals(s, c, m));
   PetscCall(SphereTableValues(&s->shape, HARMONIC, s->count, 3, c, at));
   for (PetscInt i = 0; i < s->turned.latitudes; i++) {
-    PetscCall(TurnedValues(&s->turned, i, c, &w, w.X));
-    if (kernel->normal) PetscCall(TurnedValues(&s->normal, i, m, &w, w.normal));
+    PetscCall(LayerTurnedValues(&s->turned, i, c, &w, w.X));
+    if (kernel->normal) PetscCall(LayerTurnedValues(&s->normal, i, m, &w, w.normal));
     PetscCall(LayerLatitude(s, kernel, i, at, &w, out));
   }
   PetscCall(PetscFree(w.normal));

@@ -49,7 +49,7 @@ typedef struct {
   PetscReal root; /* of sin(theta) */
 } SurfacePoint;
 
-static SurfacePoint PointOf(Surface s, PetscInt i) {
+static SurfacePoint SurfacePointOf(Surface s, PetscInt i) {
   SurfacePoint at;
   for (PetscInt part = 0; part < HARMONIC_PARTS; part++)
     for (int d = 0; d < 3; d++) at.X[part][d] = s->D[part][d * s->n + i];
@@ -66,7 +66,8 @@ static SurfacePoint PointOf(Surface s, PetscInt i) {
 }
 
 /* dh[part][3] and dJ[2][3]: how h and J change with the derivatives of X. */
-static void PointDerivatives(const SurfacePoint *at, PetscReal dh[HARMONIC_PARTS][3], PetscReal dJ[HARMONIC_PARTS][3]) {
+static void SurfacePointDerivatives(const SurfacePoint *at, PetscReal dh[HARMONIC_PARTS][3],
+                                    PetscReal dJ[HARMONIC_PARTS][3]) {
   const PetscReal *T = at->X[HARMONIC_T], *P = at->X[HARMONIC_P], *a = at->a;
   const PetscReal f = PetscPowReal(at->W, -2.5) / at->root, g = 2.5 * at->N * f / at->W,
                   tt = Dot(at->X[HARMONIC_TT], a), tp = Dot(at->X[HARMONIC_TP], a), pp = Dot(at->X[HARMONIC_PP], a);
@@ -89,7 +90,7 @@ static void PointDerivatives(const SurfacePoint *at, PetscReal dh[HARMONIC_PARTS
 }
 
 /* out[3 count][n] = SUM_part factor[part][3][n] times the harmonics' derivatives, parts first .. last. */
-static void CombineParts(Surface s, const PetscReal factor[], PetscInt last, PetscReal out[]) {
+static void SurfaceCombineParts(Surface s, const PetscReal factor[], PetscInt last, PetscReal out[]) {
   const PetscInt n = s->n, count = s->sphere->count;
   for (int d = 0; d < 3; d++)
     for (PetscInt k = 0; k < count; k++) {
@@ -108,17 +109,17 @@ static PetscErrorCode SurfaceDerivatives(Surface s) {
   if (!s->dh) PetscCall(PetscMalloc2(size, &s->dh, size, &s->dJ));
   PetscCall(PetscMalloc2(3 * HARMONIC_PARTS * n, &h, 3 * HARMONIC_PARTS * n, &J));
   for (PetscInt i = 0; i < n; i++) {
-    const SurfacePoint at = PointOf(s, i);
+    const SurfacePoint at = SurfacePointOf(s, i);
     PetscReal dh[HARMONIC_PARTS][3] = {{0}}, dJ[HARMONIC_PARTS][3] = {{0}};
-    PointDerivatives(&at, dh, dJ);
+    SurfacePointDerivatives(&at, dh, dJ);
     for (PetscInt part = 0; part < HARMONIC_PARTS; part++)
       for (int d = 0; d < 3; d++) {
         h[(3 * part + d) * n + i] = dh[part][d];
         J[(3 * part + d) * n + i] = dJ[part][d];
       }
   }
-  CombineParts(s, h, HARMONIC_PP, s->dh);
-  CombineParts(s, J, HARMONIC_P, s->dJ);
+  SurfaceCombineParts(s, h, HARMONIC_PP, s->dh);
+  SurfaceCombineParts(s, J, HARMONIC_P, s->dJ);
   PetscCall(PetscFree2(h, J));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,7 +131,7 @@ PetscErrorCode SurfacePlace(Surface s, const PetscReal c[], PetscBool derivative
     PetscCall(SphereTableValues(&s->sphere->fine, part, s->sphere->count, 3, c, s->D[part]));
   s->area = s->volume = s->energy = 0;
   for (PetscInt i = 0; i < s->n; i++) {
-    const SurfacePoint at = PointOf(s, i);
+    const SurfacePoint at = SurfacePointOf(s, i);
     s->J[i] = at.W / (at.root * at.root);
     s->h[i] = at.N * PetscPowReal(at.W, -2.5) / at.root;
     for (int d = 0; d < 3; d++) s->normal[d * s->n + i] = at.a[d] / at.W;

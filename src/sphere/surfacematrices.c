@@ -3,7 +3,7 @@
 #include "sphere/spherelayer.h"
 
 /* C[columns_B][columns_A] = SUM over points of factor A B, A[columns_A][n], B[columns_B][n]. */
-static PetscErrorCode WeightedProduct(PetscInt n, const PetscReal factor[], DenseView A, DenseView B, PetscReal C[]) {
+static PetscErrorCode SurfaceProduct(PetscInt n, const PetscReal factor[], DenseView A, DenseView B, PetscReal C[]) {
   PetscReal *scaled;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * A.columns, &scaled));
@@ -20,23 +20,23 @@ static DenseView Columns(PetscInt n, PetscInt columns, const PetscReal a[]) {
 
 PetscErrorCode SurfaceGradient(Surface s, PetscReal g[]) {
   PetscFunctionBeginUser;
-  PetscCall(WeightedProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, 1, s->h),
-                            Columns(s->n, 3 * s->sphere->count, s->dh), g));
+  PetscCall(SurfaceProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, 1, s->h),
+                           Columns(s->n, 3 * s->sphere->count, s->dh), g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SurfaceBending(Surface s, PetscReal K[]) {
   const DenseView dh = Columns(s->n, 3 * s->sphere->count, s->dh);
   PetscFunctionBeginUser;
-  PetscCall(WeightedProduct(s->n, s->sphere->fine.grid.weight, dh, dh, K));
+  PetscCall(SurfaceProduct(s->n, s->sphere->fine.grid.weight, dh, dh, K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SurfaceAreaRows(Surface s, PetscReal A[]) {
   const PetscInt count = s->sphere->count;
   PetscFunctionBeginUser;
-  PetscCall(WeightedProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, count, s->sphere->fine.part[HARMONIC]),
-                            Columns(s->n, 3 * count, s->dJ), A));
+  PetscCall(SurfaceProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, count, s->sphere->fine.part[HARMONIC]),
+                           Columns(s->n, 3 * count, s->dJ), A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,7 +50,7 @@ PetscErrorCode SurfaceNormals(Surface s, PetscReal N[]) {
     const PetscInt a = TensorPair[q][0], b = TensorPair[q][1];
     for (PetscInt i = 0; i < n; i++)
       factor[i] = s->sphere->fine.grid.weight[i] * s->normal[a * n + i] * s->normal[b * n + i];
-    PetscCall(WeightedProduct(n, factor, Y, Y, block));
+    PetscCall(SurfaceProduct(n, factor, Y, Y, block));
     for (PetscInt l = 0; l < count; l++) {
       PetscCall(PetscArraycpy(N + (b * count + l) * 3 * count + a * count, block + l * count, count));
       PetscCall(PetscArraycpy(N + (a * count + l) * 3 * count + b * count, block + l * count, count));
@@ -61,7 +61,7 @@ PetscErrorCode SurfaceNormals(Surface s, PetscReal N[]) {
 }
 
 /* L[count][count] = INT max(sigma, 0) grad_s Y_k . grad_s Y_l dA. */
-static PetscErrorCode TensionGradients(Surface s, const PetscReal sigma[], PetscReal L[]) {
+static PetscErrorCode SurfaceTensionGradients(Surface s, const PetscReal sigma[], PetscReal L[]) {
   const PetscInt n = s->n, count = s->sphere->count;
   const PetscReal *T = s->D[HARMONIC_T], *P = s->D[HARMONIC_P];
   PetscReal *at, *factor, *block;
@@ -84,7 +84,7 @@ static PetscErrorCode TensionGradients(Surface s, const PetscReal sigma[], Petsc
   for (int q = 0; q < 4; q++) {
     const DenseView A = Columns(n, count, s->sphere->fine.part[q / 2 ? HARMONIC_P : HARMONIC_T]),
                     B = Columns(n, count, s->sphere->fine.part[q % 2 ? HARMONIC_P : HARMONIC_T]);
-    PetscCall(WeightedProduct(n, factor + (q / 2 + q % 2) * n, A, B, block));
+    PetscCall(SurfaceProduct(n, factor + (q / 2 + q % 2) * n, A, B, block));
     for (PetscInt k = 0; k < count * count; k++) L[k] += block[k];
   }
   PetscCall(PetscFree3(at, factor, block));
@@ -97,10 +97,10 @@ PetscErrorCode SurfacePull(Surface s, const PetscReal sigma[], PetscReal K[]) {
   PetscReal *L, *normal, *factor, *LP;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(count * count, &L, 3 * count * count, &normal, n, &factor, 3 * count * count, &LP));
-  PetscCall(TensionGradients(s, sigma, L));
+  PetscCall(SurfaceTensionGradients(s, sigma, L));
   for (int d = 0; d < 3; d++) {
     for (PetscInt i = 0; i < n; i++) factor[i] = s->sphere->fine.grid.weight[i] * s->normal[d * n + i];
-    PetscCall(WeightedProduct(n, factor, Y, Y, normal + d * count * count)); /* of n_d Y */
+    PetscCall(SurfaceProduct(n, factor, Y, Y, normal + d * count * count)); /* of n_d Y */
   }
   PetscCall(DenseProduct(PETSC_FALSE, count, 3 * count, count, L, normal, LP));
   PetscCall(DenseProduct(PETSC_TRUE, 3 * count, 3 * count, count, normal, LP, K));

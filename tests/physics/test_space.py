@@ -46,6 +46,15 @@ def test_equilibrium(shape, volume, energy, tmp_path):
     assert np.diff(energies).max() < 1e-7
 
 
+def test_a_sphere_settles(tmp_path):
+    """Its membrane is incompressible, so it falls as a rigid one: 2/9 of weight R0^2/nu (Stokes)."""
+    options = (
+        f"{SPACE} -vesicle_reduced_volume 1 -fluid_gravity 0,0,-2 -vesicle_density_difference 0.5 -fluid_viscosity 3"
+    )
+    last = run_petves(tmp_path / "run", f"{options} -time_step 0.1 -time_end 0.5").series
+    assert abs(last["velocity_z"][-1] + 2 / 27) < 1e-7 and abs(last["velocity_x"][-1]) < 1e-9
+
+
 def test_orders_in_time(tmp_path):
     """The angle at t = 1.6 from a smooth start at t = 0.4, made by tiny steps."""
 
