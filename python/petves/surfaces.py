@@ -106,10 +106,11 @@ class SurfaceRun:
             "xyz": ["x", "y", "z"],
             "vesicle": np.arange(1, self.vesicles + 1),
         }
+        energies = {"energy_bending", *(f"energy_bending_{v + 1}" for v in range(self.vesicles))}
         about = {"folder": str(self.folder), "degree": self.degree, "nu": self.nu}
         data = xarray.Dataset(variables, own, about | {"reason": self.summary.get("reason", "")})
         for name in data.variables:
-            data[name].attrs["units"] = unit(str(name)).replace("^4/", "^5/")  # energies are of a volume's fluid
+            data[name].attrs["units"] = "length^5/time^2" if name in energies else unit(str(name))
         return data
 
 

@@ -1,0 +1,57 @@
+"""Runs in three dimensions from Python: what is loaded, drawn and filmed, and what VTK reads."""
+
+import numpy as np
+import pytest
+from harness import SITE, run_petves
+
+import petves
+from petves.surfaces import SurfaceRun
+
+SCENE = "-dim 3 -flow_type shear -vesicle_bending 0.1 -sphere_degree 8 -time_step 0.2 -time_end 0.4 -output_every 0.2"
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory):
+    options = f"{SCENE} -vesicle_count 2 -vesicle_center -2,0.8,0,2,-0.8,0"
+    return run_petves(tmp_path_factory.mktemp("pair") / "run", options).folder
+
+
+def test_surfaces_are_closed_and_have_their_volume(pair):
+    run = petves.load(pair, kind="numpy")
+    assert isinstance(run, SurfaceRun) and run.vesicles == 2 and list(run.time) == [0, 0.2, 0.4]
+    edges = np.sort(run.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()  # each edge has two triangles
+    for vesicle in range(2):
+        a, b, c = np.moveaxis(run.points[-1, vesicle][run.triangles], 1, 0)
+        volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+        assert 0.9 < volume / run.series[f"volume_{vesicle + 1}"][-1] < 1
+        assert run.tension[-1, vesicle].max() < run.series[f"tension_max_{vesicle + 1}"][-1] + 0.1
+
+
+def test_dataset_has_units(pair):
+    data = petves.load(pair)
+    assert data.points.dims == ("time", "vesicle", "point", "xyz") and data.points.attrs["units"] == "length"
+    assert data.energy_bending.attrs["units"] == "length^5/time^2" and data.attrs["degree"] == 8
+    assert not [name for name in data.data_vars if name != "triangles" and not data[name].attrs["units"]]
+
+
+def test_pictures_and_a_film(pair):
+    assert [path.name for path in petves.plot(pair)] == ["surfaces.png", "course.png"]
+    assert [path.name for path in petves.plot(pair, time=0.2)] == ["surfaces_t0.2.png"]
+    assert petves.movie(pair, pair / "film.gif", width=400).stat().st_size > 10000
+    with pytest.raises(petves.RunError, match="three dimensions"):
+        petves.plot(pair, columns=["gap"])
+
+
+@pytest.mark.skipif(not (SITE / "vtk.py").exists(), reason="vtk is not to be had")
+def test_vtk_reads_every_frame(pair, monkeypatch):
+    monkeypatch.syspath_prepend(str(SITE))
+    vtk = pytest.importorskip("vtkmodules.vtkIOXdmf2")
+    reader = vtk.vtkXdmfReader()
+    reader.SetFileName(str(pair / "run.xmf"))
+    reader.UpdateInformation()
+    for time in (0, 0.2, 0.4):
+        reader.UpdateTimeStep(time)
+        frame = reader.GetOutputDataObject(0)
+        assert frame.GetNumberOfPoints() == 2 * 164 and frame.GetNumberOfCells() == 2 * 324
+        assert frame.GetPointData().GetArray("tension") and frame.GetCellData().GetArray("vesicle")
