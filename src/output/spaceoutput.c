@@ -1,5 +1,7 @@
 #include "output/spaceoutput.h"
 
+#define ROUGH 0.01 /* spectrum_tail from which on a higher degree is due */
+
 static void SpaceOutputNextTime(SpaceOutput o) {
   const PetscReal every = o->scene->output.every, dt = o->space->setting.policy.base;
   o->next = StepDecimal(every * (PetscFloorReal((o->space->state.t + 1e-9 * dt) / every) + 1));
@@ -72,6 +74,19 @@ static PetscErrorCode SpaceOutputRow(SpaceOutput o) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A warning, once, when the degree is too small. */
+static PetscErrorCode SpaceOutputWarn(SpaceOutput o) {
+  const PetscReal tail = o->record.last[SPACE_TAIL];
+  PetscFunctionBeginUser;
+  if (tail < ROUGH || *o->warning) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(o->warning, sizeof(o->warning),
+                          "the spherical harmonics do not resolve a vesicle after step %" PetscInt_FMT
+                          ", time %g: spectrum_tail is %.2g; try -sphere_degree %" PetscInt_FMT,
+                          o->space->state.step, (double)o->space->state.t, (double)tail, o->space->sphere->p + 4));
+  PetscCall(PetvesSay(o->scene->comm, "petves: warning: %s\n", o->warning));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SpaceOutputFrame(SpaceOutput o, PetscBool scheduled) {
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
@@ -95,6 +110,7 @@ PetscErrorCode SpaceOutputStep(SpaceOutput o) {
   const PetscInt every = o->scene->output.checkpoint_every;
   PetscFunctionBeginUser;
   PetscCall(SpaceOutputRow(o));
+  PetscCall(SpaceOutputWarn(o));
   if (q->t >= o->next - 1e-9 * o->space->report.dt) {
     PetscCall(SpaceOutputFrame(o, PETSC_TRUE));
     SpaceOutputNextTime(o);
@@ -114,8 +130,10 @@ static PetscErrorCode SpaceOutputSummary(FILE *f, const void *output) {
             (double)o->record.last[c]);
   fprintf(f, "},\n  \"totals\": {\"steps\": %d, \"coupled_its\": %d},\n  \"dim\": 3,\n  \"degree\": %d,\n",
           (int)o->space->state.step, (int)o->record.its, (int)o->space->sphere->p);
-  fprintf(f, "  \"vesicles\": %d,\n  \"written\": {\"frames\": %d},\n  \"warnings\": [],\n",
-          (int)o->space->share.vesicles, (int)o->frames.count);
+  fprintf(f, "  \"vesicles\": %d,\n  \"written\": {\"frames\": %d},\n  \"warnings\": [", (int)o->space->share.vesicles,
+          (int)o->frames.count);
+  if (*o->warning) SummaryPrintString(f, o->warning);
+  fprintf(f, "],\n");
   SummaryPrintOrigin(f);
   return PETSC_SUCCESS;
 }

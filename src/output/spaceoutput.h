@@ -24,14 +24,15 @@ struct _p_SpaceOutput {
   Xdmf xdmf;
   Checkpoint checkpoint;
   ProgressClock clock;
-  PetscBool go_on;              /* the files go on after the checkpoint of -restart */
-  PetscInt scheduled;           /* frames at multiples of -output_every, the first included */
-  PetscReal shown;              /* time of the last frame */
-  PetscReal next;               /* time of the next one */
-  PetscReal checkpoint_seconds; /* longest that writing a checkpoint has taken */
-  PetscInt points;              /* of a vesicle in frames */
-  PetscReal *Y;                 /* [count][points] harmonics there */
-  const char *reason;           /* why the run has ended */
+  PetscBool go_on;                  /* the files go on after the checkpoint of -restart */
+  PetscInt scheduled;               /* frames at multiples of -output_every, the first included */
+  PetscReal shown;                  /* time of the last frame */
+  PetscReal next;                   /* time of the next one */
+  PetscReal checkpoint_seconds;     /* longest that writing a checkpoint has taken */
+  PetscInt points;                  /* of a vesicle in frames */
+  PetscReal *Y;                     /* [count][points] harmonics there */
+  char warning[PETVES_MAX_MESSAGE]; /* that harmonics do not resolve a shape; empty: none */
+  const char *reason;               /* why the run has ended */
 };
 
 PETSC_EXTERN PetscErrorCode SpaceOutputCreate(Scene scene, Space space, SpaceOutput *output);

@@ -66,7 +66,7 @@ PetscReal ShapeTail(PetscInt p, const PetscReal c[]) {
   for (PetscInt k = 0; k < 3 * count; k++) {
     const PetscInt l = HarmonicsDegree(k % count);
     if (l > 0) all += c[k] * c[k];
-    if (4 * l > 3 * p) tail += c[k] * c[k];
+    if (4 * l >= 3 * p) tail += c[k] * c[k];
   }
   return PetscSqrtReal(tail / all);
 }

@@ -18,6 +18,6 @@ typedef struct {
 } ShapeMoments;
 
 /* ShapeMeasure - where the surface has been placed. ShapeTail - of c[3][count]: the root mean square of the
-   coefficients above three quarters of the degree over that of all but the mean. Not collective. */
+   coefficients from three quarters of the degree on over that of all but the mean. Not collective. */
 PETSC_EXTERN PetscErrorCode ShapeMeasure(Surface surface, ShapeMoments *moments);
 PETSC_EXTERN PetscReal ShapeTail(PetscInt p, const PetscReal c[]);

@@ -46,6 +46,13 @@ def test_equilibrium(shape, volume, energy, tmp_path):
     assert np.diff(energies).max() < 1e-7
 
 
+def test_a_degree_too_small_is_named(tmp_path):
+    rough = "-sphere_degree 4 -vesicle_bending 1 -vesicle_reduced_volume 0.3"
+    run = run_petves(tmp_path / "run", f"{SPACE} {rough} -time_step 0.05 -time_end 0.3")
+    (warning,) = run.summary["warnings"]
+    assert run.series["spectrum_tail"][-1] > 0.01 and "try -sphere_degree 8" in warning
+
+
 def test_a_sphere_settles(tmp_path):
     """Its membrane is incompressible, so it falls as a rigid one: 2/9 of weight R0^2/nu (Stokes)."""
     options = (
