@@ -84,24 +84,16 @@ void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], 
   }
 }
 
-/* d -= w Dm T/h^2 of membranes that stretch. */
-static PetscErrorCode LawTargetViscous(MembraneLaw law, Vec T, PetscScalar d[]) {
-  const PetscScalar *t;
-  PetscScalar *rate = law->membrane->work.memory;
-  PetscFunctionBeginUser;
-  if (!law->c || !T) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(T, &t));
-  LawRows(law, t, NULL, rate);
-  PetscCall(VecRestoreArrayRead(T, &t));
-  for (PetscInt k = 0; k < law->n; k++) d[k] -= law->viscous[k] * rate[k];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) {
   const Membrane m = law->membrane;
-  const PetscScalar *X;
-  PetscScalar *hat = m->work.stretching, *d;
+  const PetscScalar *X, *t;
+  PetscScalar *hat = m->work.stretching, *passed = m->work.memory, *d;
   PetscFunctionBeginUser;
+  if (T) {
+    PetscCall(VecGetArrayRead(T, &t));
+    LawRows(law, t, NULL, passed);
+    PetscCall(VecRestoreArrayRead(T, &t));
+  }
   PetscCall(VecGetArrayRead(Xhat, &X));
   PetscCall(VecGetArray(g, &d));
   for (PetscInt v = law->vesicle; v < law->end; v++) {
@@ -117,9 +109,9 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) 
       }
       const PetscReal aim = rate * (0.5 * (ds * ds - star2) - gap) / (ds * law->h2);
       d[at + k] += law->c ? (1 - law->viscous[at + k]) * (aim - rate * ds * law->excess[at + k] / law->h2) : aim;
+      if (T) d[at + k] -= law->viscous[at + k] * passed[at + k];
     }
   }
-  PetscCall(LawTargetViscous(law, T, d));
   PetscCall(VecRestoreArray(g, &d));
   PetscCall(VecRestoreArrayRead(Xhat, &X));
   PetscFunctionReturn(PETSC_SUCCESS);

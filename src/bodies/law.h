@@ -21,7 +21,7 @@
    Next to nothing is lost: a pressure, a force along z, moves nothing in a fluid that keeps its volume.
 
    A law is that of the vesicles vesicle .. end - 1. Arrays are of these vesicles: [2n] of their n markers, [n] of their
-   edges, LawNumbers unknowns and rows. Vectors are those of the own vesicles. */
+   edges, unknowns and rows. Vectors are those of the own vesicles. */
 #pragma once
 #include "bodies/membrane.h"
 
@@ -52,11 +52,6 @@ static inline PetscBool LawAimsAreas(MembraneLaw law) {
   return law->ratio ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* LawNumbers - how many unknowns and rows there are. */
-static inline PetscInt LawNumbers(MembraneLaw law) {
-  return law->n;
-}
-
 /* LawPlace - linearise at the markers X[2n], for a step of time coefficient a0 (1/time). */
 PETSC_EXTERN void LawPlace(MembraneLaw law, PetscReal a0, const PetscScalar X[]);
 
@@ -69,8 +64,8 @@ PETSC_EXTERN void LawRows(MembraneLaw law, const PetscScalar V[], const PetscSca
 
        (1 - w) a0 [-ds^2 sigma_q/(2 slope) - e*.(ehat - e*)]/(ds h^2) - w Dm T/h^2,
 
-   T the velocity of the labels, which markers that pass along the membrane have besides V; NULL: 0. Where c = 0 a0 may
-   be another one than the step's: 0 leaves the edges as they are.
+   T the velocity of the labels, which markers that pass along the membrane have besides V; NULL: no viscosity.
+   Where c = 0 a0 may be another one than the step's: 0 leaves the edges as they are.
 
    LawTargetAreas - z, and s by which the new markers have the first areas A0:
 

@@ -21,7 +21,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
   if (coupling->bodies->obstacles) u->solid += FreeBodiesOwn(coupling->bodies->obstacles);
-  u->edges = LawNumbers(coupling->law);
+  u->edges = coupling->law->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
