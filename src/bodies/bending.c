@@ -9,25 +9,35 @@ static void CurveAddSecondDifference(PetscInt n, PetscReal w, const PetscScalar 
   }
 }
 
-/* Y += J (D1 X) kappa0, or (transposed) J D1 (kappa0 X), times w and by the arc length. */
-static void BendingAddMemory(Membrane m, PetscInt v, PetscBool transposed, PetscReal w, const PetscScalar X[],
-                             PetscScalar Y[]) {
+/* Y += B X. */
+static void BendingCurvature(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar Y[]) {
   const PetscInt n = LayoutCount(m->layout, v);
-  const PetscReal *kappa = m->memory + m->layout->start[v];
-  PetscScalar *given = m->work.memory, *slope = given + 2 * n;
-  for (PetscInt k = 0; k < 2 * n; k++) given[k] = transposed ? kappa[k / 2] * X[k] : X[k];
+  PetscScalar *slope = m->work.memory;
+  SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, Y);
+  if (!m->memory) return;
   (void)PetscArrayzero(slope, 2 * n);
-  SpectralDerivative(m->spectral[v], 1, w * n / m->arc[v], given, slope);
+  SpectralDerivative(m->spectral[v], 1, n / m->arc[v], X, slope);
   for (PetscInt k = 0; k < n; k++) {
-    Y[2 * k] -= (transposed ? 1 : kappa[k]) * slope[2 * k + 1];
-    Y[2 * k + 1] += (transposed ? 1 : kappa[k]) * slope[2 * k];
+    const PetscReal kappa = m->memory[m->layout->start[v] + k];
+    Y[2 * k] += kappa * slope[2 * k + 1];
+    Y[2 * k + 1] -= kappa * slope[2 * k];
   }
 }
 
-/* Y += B X. */
-static void BendingCurvature(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar Y[]) {
-  SpectralDerivative(m->spectral[v], 2, PetscSqr(LayoutCount(m->layout, v) / m->arc[v]), X, Y);
-  if (m->memory) BendingAddMemory(m, v, PETSC_FALSE, -1, X, Y);
+PetscErrorCode MembraneMemoryMatrix(Membrane m, PetscInt v, PetscReal **BB) {
+  const PetscInt n = 2 * LayoutCount(m->layout, v);
+  PetscReal *unit, *B;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, BB));
+  PetscCall(PetscCalloc2(n, &unit, n * n, &B));
+  for (PetscInt k = 0; k < n; k++) {
+    unit[k] = PetscSqrtReal(m->ds[v]);
+    BendingCurvature(m, v, unit, B + n * k);
+    unit[k] = 0;
+  }
+  PetscCall(DenseProduct(PETSC_TRUE, n, n, n, B, B, *BB));
+  PetscCall(PetscFree2(unit, B));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
@@ -35,10 +45,9 @@ void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const Petsc
   PetscScalar *curvature = m->work.bending;
   alpha *= m->part[v];
   if (m->memory) {
-    (void)PetscArrayzero(curvature, 2 * n);
-    BendingCurvature(m, v, X, curvature);
-    SpectralDerivative(m->spectral[v], 2, alpha * m->ds[v] * PetscSqr(n / m->arc[v]), curvature, F);
-    BendingAddMemory(m, v, PETSC_TRUE, -alpha * m->ds[v], curvature, F);
+    PetscScalar *near = m->work.bending; /* X close to the origin; far from it digits would be lost */
+    for (PetscInt k = 0; k < 2 * n; k++) near[k] = X[k] - X[k % 2];
+    (void)DenseMultAdd(PETSC_FALSE, 2 * n, 2 * n, alpha, m->BB[v], near, F);
     return;
   }
   if (m->derivative != DERIVATIVE_FD) {
@@ -80,16 +89,18 @@ static PetscErrorCode BendingRate(void *context, PetscReal alpha, const PetscSca
 /* D4 is circulant: all columns are the first one, shifted. B^T B is not. */
 static PetscErrorCode BendingDense(void *context, PetscInt v, PetscReal alpha, PetscReal K[]) {
   const Membrane m = (Membrane)context;
-  const PetscInt n = LayoutCount(m->layout, v), columns = m->memory ? 2 * n : 1;
+  const PetscInt n = LayoutCount(m->layout, v);
   PetscReal *unit, *first;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * n, &unit, 2 * n, &first));
-  for (PetscInt k = 0; k < columns; k++) {
-    unit[k] = 1;
-    MembraneVesicleBending(m, v, alpha * m->bending, unit, m->memory ? K + 2 * n * k : first);
-    unit[k] = 0;
+  alpha *= m->bending;
+  if (m->memory) {
+    for (PetscInt k = 0; k < 4 * n * n; k++) K[k] += alpha * m->part[v] * m->BB[v][k];
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (!m->memory) DenseAddCirculant(n, first, 2 * n, K);
+  PetscCall(PetscCalloc2(2 * n, &unit, 2 * n, &first));
+  unit[0] = 1;
+  MembraneVesicleBending(m, v, alpha, unit, first);
+  DenseAddCirculant(n, first, 2 * n, K);
   PetscCall(PetscFree2(unit, first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -44,6 +44,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   PetscCall(PetscMalloc1(4 * layout->M, &w->memory));
   for (PetscInt v = 0; v < vesicles && !m->memory; v++)
     if (material[v].memory > 0) PetscCall(PetscMalloc1(layout->M, &m->memory));
+  if (m->memory) PetscCall(PetscCalloc1(vesicles, &m->BB));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
     const PetscReal *rest = (given->rest_X ? given->rest_X : X) + 2 * layout->start[v];
@@ -58,7 +59,10 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
     m->material[v] = material[v];
     if (MembraneStretches(m, v)) m->stretches = PETSC_TRUE;
     if (material[v].viscosity > 0) m->viscous = PETSC_TRUE;
-    if (m->memory) MembraneCurvature(m, v, material[v].memory, rest, m->memory + layout->start[v]);
+    if (m->memory) {
+      MembraneCurvature(m, v, material[v].memory, rest, m->memory + layout->start[v]);
+      PetscCall(MembraneMemoryMatrix(m, v, &m->BB[v]));
+    }
     m->part[v] = m->bending > 0 ? material[v].bending / m->bending : 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -68,7 +72,11 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   Membrane m = *membrane;
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < m->layout->bodies; v++) PetscCall(SpectralDestroy(&m->spectral[v]));
+  for (PetscInt v = 0; v < m->layout->bodies; v++) {
+    PetscCall(SpectralDestroy(&m->spectral[v]));
+    if (m->BB) PetscCall(PetscFree(m->BB[v]));
+  }
+  PetscCall(PetscFree(m->BB));
   PetscCall(PetscFree7(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part, m->material));
   PetscCall(PetscFree(m->work.memory));
   PetscCall(PetscFree(m->memory));
