@@ -1,4 +1,5 @@
 #include "bodies/moment.h"
+#include "numerics/blas.h"
 
 #define TIMES 2 /* points of the energy for each marker */
 
@@ -114,18 +115,26 @@ static PetscErrorCode MomentKnown(void *context, PetscReal alpha, const PetscSca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* alpha N = A^T A. The slopes of a unit at one marker are those of all others, shifted. */
 static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, PetscReal K[]) {
   const Moment *o = (const Moment *)context;
-  const PetscInt n = LayoutCount(o->membrane->layout, v);
-  PetscReal *unit;
+  const Membrane m = o->membrane;
+  const PetscInt n = LayoutCount(m->layout, v), points = TIMES * n;
+  PetscReal *unit, *A;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * n, &unit));
-  for (PetscInt k = 0; k < 2 * n; k++) {
-    unit[k] = 1;
-    MomentAdd(o, v, alpha, o->point, unit, K + 2 * n * k);
-    unit[k] = 0;
+  PetscCall(PetscCalloc2(2 * n, &unit, 2 * n * points, &A));
+  unit[0] = PetscSqrtReal(alpha * m->bending * m->part[v] * m->ds[v] / TIMES);
+  MomentSlopes(o, v, unit);
+  for (PetscInt k = 0; k < points; k++) {
+    const MomentPoint *at = &o->point[TIMES * m->layout->start[v] + k];
+    for (PetscInt j = 0; j < 2 * n; j++) {
+      const PetscInt q = 2 * (k % n < j / 2 ? k - j / 2 + n : k - j / 2);
+      A[j * points + k] = PetscSqrtReal(at->weight) * (at->by_a[j % 2] * o->a[q] + at->by_b[j % 2] * o->b[q]);
+    }
   }
-  PetscCall(PetscFree(unit));
+  const DenseView view = {A, points, 2 * n, points};
+  PetscCall(DenseProductWithin(PETSC_TRUE, view, view, 1, K, 2 * n));
+  PetscCall(PetscFree2(unit, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
