@@ -52,11 +52,11 @@ static inline void AddProducts(PetscInt n, const PetscReal X[], const PetscReal 
   sum[1] += (Lanes){-y[1] * x[0], y[0] * x[1]};
 }
 
-RigidFit RigidFitCurves(PetscInt n, const PetscReal X[], const PetscReal Y[]) {
+RigidFit RigidFitCurves(PetscInt n, PetscBool shifted, const PetscReal X[], const PetscReal Y[]) {
   RigidFit fit = {.turn = {1, 0}};
   PetscReal squares = 0, largest = -1;
   for (PetscInt k = 0; k < 2 * n; k++) squares += X[k] * X[k] + Y[k] * Y[k];
-  for (PetscInt j = 0; j < n; j++) {
+  for (PetscInt j = 0; j < (shifted ? n : 1); j++) {
     Lanes sum[2] = {{0}, {0}};
     AddProducts(n - j, X + 2 * j, Y, sum);
     AddProducts(j, X, Y + 2 * (n - j), sum);

@@ -23,8 +23,9 @@ PETSC_EXTERN void RigidFitCentre(PetscInt n, const PetscReal X[], PetscReal Y[])
 PETSC_EXTERN void RigidFitSizes(PetscInt n, const PetscReal X[], PetscReal size[RIGIDFIT_SIZES]);
 PETSC_EXTERN PetscReal RigidFitLeast(const PetscReal a[RIGIDFIT_SIZES], const PetscReal b[RIGIDFIT_SIZES]);
 
-/* RigidFitCurves - how the other centred curve Y lies on the centred curve X, n markers each. Not collective. */
-PETSC_EXTERN RigidFit RigidFitCurves(PetscInt n, const PetscReal X[], const PetscReal Y[]);
+/* RigidFitCurves - how the other centred curve Y lies on the centred curve X, n markers each, with labels shifted
+   or only turned. Not collective. */
+PETSC_EXTERN RigidFit RigidFitCurves(PetscInt n, PetscBool shifted, const PetscReal X[], const PetscReal Y[]);
 
 /* RigidFitTurn - n vectors x turned from the other curve's frame to this one's, or (back) the other way. RigidFitInto -
    y is in the other curve's frame what x is at the n markers of this one: vectors (each = 2) turned, numbers (1) as

@@ -92,7 +92,7 @@ void DenseBlocksPlace(DenseBlocks b) {
     BlockFrame *f = &b->frame[k];
     if (f->turns && f->made) {
       RigidFitCentre(law->n, b->coupling->markers->X + 2 * law->first, f->U);
-      f->fit = RigidFitCurves(law->n, f->U, f->X);
+      f->fit = RigidFitCurves(law->n, !b->coupling->membrane->memory, f->U, f->X);
     }
     PlaceLaw(b, k);
   }

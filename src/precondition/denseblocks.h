@@ -3,7 +3,7 @@
 
    The mobility of a block is M = Mob + h^2 C, Mob the grid's (meanmobility.h) and C the near field. A block of one
    vesicle that knows no obstacles is used in the frame of the vesicle for which it was made, turned and with labels
-   shifted (rigidfit.h), so that it serves longer.
+   shifted (rigidfit.h), so that it serves longer. With a shape memory, which goes with the labels, none are shifted.
 
    A block belongs to one rank, the owner of its first vesicle. All ranks make parts of Mob of a block for all. */
 #pragma once

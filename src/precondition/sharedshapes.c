@@ -87,7 +87,7 @@ static PetscReal ShapeDistance(SharedShapes s, PetscInt v, const SharedShape *q,
   if (!AreAlike(s->coupling, v, q->like)) return PETSC_MAX_REAL;
   const PetscReal treading = TreadingDistance(s->coupling, v, q);
   if (RigidFitLeast(size, q->size) / R0 + treading > limit) return PETSC_MAX_REAL;
-  *fit = RigidFitCurves(LayoutCount(m->layout, v), s->X, q->X);
+  *fit = RigidFitCurves(LayoutCount(m->layout, v), PETSC_TRUE, s->X, q->X);
   return fit->distance / R0 + treading;
 }
 

@@ -38,7 +38,7 @@ static void CheckPose(PetscReal angle, PetscInt shift) {
   TurnCurve(angle, shift, Y, X);
   RigidFitCentre(N, X, x);
   RigidFitCentre(N, Y, y);
-  RigidFit p = RigidFitCurves(N, x, y);
+  RigidFit p = RigidFitCurves(N, PETSC_TRUE, x, y);
   CHECK((p.shift + shift) % N == 0, "labels shifted by %d are shifted back by %d", (int)shift, (int)p.shift);
   CHECK(fabs(p.turn[0] - cos(angle)) + fabs(p.turn[1] - sin(angle)) < 1e-13, "a turn of %g is found", angle);
   CHECK(p.distance < 1e-7, "nothing is left, %.1e", p.distance);
@@ -54,7 +54,7 @@ static void CheckPose(PetscReal angle, PetscInt shift) {
   RigidFitSizes(N, y, b);
   CHECK(RigidFitLeast(a, b) < 1e-13, "sizes know no turn and no labels, %.1e", RigidFitLeast(a, b));
   for (PetscInt k = 0; k < N; k++) x[2 * k] += k % 2 ? 0.01 : -0.01;
-  p = RigidFitCurves(N, x, y);
+  p = RigidFitCurves(N, PETSC_TRUE, x, y);
   RigidFitSizes(N, x, a);
   CHECK(RigidFitLeast(a, b) > 1e-3 && RigidFitLeast(a, b) <= p.distance,
         "the distance is not less than that of the sizes");
@@ -81,7 +81,7 @@ static void CheckFit(PetscInt n) {
     most = c[0] * c[0] + c[1] * c[1];
     best = j;
   }
-  const RigidFit p = RigidFitCurves(n, x, y);
+  const RigidFit p = RigidFitCurves(n, PETSC_TRUE, x, y);
   CHECK(p.shift == best, "%d points: shifted by %d, the best is %d", (int)n, (int)p.shift, (int)best);
 }
 
