@@ -132,8 +132,32 @@ static void CheckStiff(PetscReal k) {
   TestCall(RecordDestroy(&without.record));
 }
 
+/* The forces' part of a dense block is the matrix of their rates. */
+static void CheckDense(const char membrane[]) {
+  unsigned state = 3;
+  ScopedWorld w;
+  TestScene(&w.scene, "%s-vesicle_markers 33 -membrane_derivative spectral %s", shear, membrane);
+  TestWorldBuild(&w);
+  TestWorldScheme(&w);
+  TestCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
+  const PetscInt n = 2 * w.layout->n;
+  PetscReal *K = TestReals(n * n), *V = TestReals(n), *rate = TestReals(n), *product = TestReals(n);
+  for (PetscInt k = 0; k < n; k++) V[k] = TestRandom(&state);
+  if (n) TestCall(ForcesDense(w.coupling->forces, 0, 0.3, K));
+  TestCall(ForcesRate(w.coupling->forces, 0.3, V, rate));
+  for (PetscInt k = 0; k < n; k++) product[k] = TestProduct(n, K + k * n, V); /* K is symmetric */
+  const PetscReal error = TestFar(n, product, rate) / PetscMax(TestFar(n, rate, NULL), 1e-30);
+  CHECK(error < 1e-12, "%s: a dense block has the forces' rates, error %.1e", membrane, error);
+}
+
 void Facts(void) {
   Shown without;
+  CheckDense("-vesicle_bending 0.1");
+  CheckDense("-vesicle_bending 0.1 -membrane_memory 1");
+  CheckDense("-vesicle_bending 0.1 -membrane_memory 1 -membrane_law hooke -membrane_stretching 30 "
+             "-membrane_moment helfrich");
+  CheckDense("-vesicle_bending 0.1 -membrane_memory 0.5 -membrane_law green -membrane_stretching 30 "
+             "-membrane_moment angle");
   Run(shear, NULL, PETSC_FALSE, &without);
   CHECK(without.header_ends_with_spring == 0, "without the spring there is no column energy_spring");
   CheckSoft(&without, 0.6, 0.2);
