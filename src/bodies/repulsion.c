@@ -62,7 +62,9 @@ static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const Cu
     s->marker[s->n] = marker[k];
     s->weight[s->n++] = weight[k];
   }
-  SpringSetLaw(&r->law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
+  SceneRepulsion law = r->law;
+  if (c->type != CONTACT_BETWEEN) law.adhesion = 0;
+  SpringSetLaw(&law, 0.5 * r->bodies->ds[c->curve[0]], X, s);
 }
 
 /* Markers of vesicles and free bodies near walls; room for 4 a marker. */
@@ -100,7 +102,7 @@ static PetscErrorCode FindSprings(Repulsion r, Instant at, const PetscReal X[], 
   PetscFunctionBeginUser;
   for (int d = 0; d < 2; d++) period[d] = g->wall[d] || g->free ? 0 : g->hi[d] - g->lo[d];
   const CurveSet set = {all->bodies, moving, all->start, r->bodies->kind, X, period, PETSC_FALSE};
-  PetscCall(CurveContacts(&set, RepulsionReach(&r->law), &n, &contact));
+  PetscCall(CurveContacts(&set, RepulsionReach(&r->law), r->bodies->vesicles, r->bodies->ds, &n, &contact));
   PetscCall(PetscMalloc1(n + 4 * all->M, springs));
   for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, at, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));

@@ -1,13 +1,13 @@
-/* A force of short range between membranes, and between membranes and walls or obstacles (docs/suspensions.md,
-   Repulsion): a stress p(d) along the normal at a distance d,
+/* A force of short range between membranes, parts of one membrane, and membranes and walls or obstacles
+   (docs/suspensions.md, Repulsion): a stress p(d) along the normal at a distance d,
 
        p = K (1 - d/D)                                   below D,
        p = -30 (W/B) x^2 (1 - x)^2,  x = (d - D)/B       between D and D + B,
        p = 0                                             beyond.
 
-   It pushes below D and, where there is adhesion W, pulls in a band of width B. In a step it is springs: the pairs that
-   touch and their normals are found at the extrapolated markers; the push is taken at the new markers, the pull at the
-   extrapolated ones. */
+   It pushes below D and, where there is adhesion W, pulls different membranes in a band of width B. In a step it is
+   springs: the pairs that touch and their normals are found at the extrapolated markers; the push is taken at the new
+   markers, the pull at the extrapolated ones. */
 #pragma once
 #include "curve/contacts.h"
 #include "bodies/force.h"

@@ -8,6 +8,8 @@ typedef struct {
   const CurveSet *set;
   PetscReal reach;
   PetscReal seam;        /* an image of a point is farther than this from the point */
+  PetscInt soft;         /* curves that may touch themselves */
+  const PetscReal *ds;   /* [soft] their point spacings */
   PetscInt *curve;       /* [points] the curve that a point is on */
   CurveContact *contact; /* [count] */
   PetscInt count;
@@ -21,12 +23,28 @@ static PetscInt ContactStep(const ContactSearch *s, PetscInt k, PetscInt steps) 
   return start[0] + (k - start[0] + steps + n) % n;
 }
 
+/* Whether the edge from q on is twice the reach and two edges or more from point p along their curve. */
+static PetscBool ContactFar(const ContactSearch *s, PetscInt p, PetscInt q) {
+  const PetscInt *start = s->set->start + s->curve[p], n = start[1] - start[0], steps = (q - p + n) % n;
+  const PetscReal ds = s->ds[s->curve[p]];
+  return PetscMin(steps, n - 1 - steps) * ds >= 2 * PetscMax(s->reach, ds) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The outside at the point `steps` from point k of curve v; `out` stays at the end of an open curve. */
+static void ContactOutside(const CurveSet *set, PetscInt v, PetscInt k, PetscInt steps, PetscReal out[2]) {
+  PetscReal P[2], Q[2];
+  if (!CurveSetWalk(set, v, k, steps - 1, P) || !CurveSetWalk(set, v, k, steps + 1, Q)) return;
+  out[0] = Q[1] - P[1];
+  out[1] = P[0] - Q[0];
+}
+
 /* The contact of point p with the edge that starts at q or, with `back`, ends at q, q moved by `shift`; false where an
-   open curve ends. At an end of the edge the outside is that of both edges that meet there. */
-static PetscBool ContactMeasure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBool back,
+   open curve ends and, of p's own curve, near p along it. At an end of the edge the outside is that of both edges that
+   meet there. */
+static PetscBool ContactMeasure(const ContactSearch *s, PetscInt p, PetscInt q, PetscBool back, PetscBool own,
                                 const PetscReal shift[2], CurveContact *c) {
   const PetscInt v = s->curve[q], a = back ? -1 : 0;
-  PetscReal A[2], B[2], P[2], Q[2], d[2], edge[2], size;
+  PetscReal A[2], B[2], d[2], edge[2], size;
   if (!CurveSetWalk(s->set, v, q, a, A) || !CurveSetWalk(s->set, v, q, a + 1, B)) return PETSC_FALSE;
   for (int k = 0; k < 2; k++) {
     edge[k] = B[k] - A[k];
@@ -35,18 +53,19 @@ static PetscBool ContactMeasure(const ContactSearch *s, PetscInt p, PetscInt q, 
   const PetscReal square = edge[0] * edge[0] + edge[1] * edge[1];
   const PetscReal along = square > 0 ? (d[0] * edge[0] + d[1] * edge[1]) / square : 0;
   *c = (CurveContact){.point = p, .edge = {ContactStep(s, q, a), ContactStep(s, q, a + 1)}, .curve = {s->curve[p], v}};
+  if (own && !ContactFar(s, p, c->edge[0])) return PETSC_FALSE;
   PetscReal out[2] = {edge[1], -edge[0]};
   c->at = PetscMax(0, PetscMin(1, along));
-  const PetscInt corner = c->at == 1 ? a + 1 : a;
-  if ((c->at == 0 || c->at == 1) && CurveSetWalk(s->set, v, q, corner - 1, P) &&
-      CurveSetWalk(s->set, v, q, corner + 1, Q)) {
-    out[0] = Q[1] - P[1];
-    out[1] = P[0] - Q[0];
-  }
+  if (c->at == 0 || c->at == 1) ContactOutside(s->set, v, q, c->at == 1 ? a + 1 : a, out);
   for (int k = 0; k < 2; k++) c->normal[k] = d[k] - c->at * edge[k];
   c->distance = PetscSqrtReal(PetscSqr(c->normal[0]) + PetscSqr(c->normal[1]));
   if ((c->normal[0] * out[0] + c->normal[1] * out[1] < 0) != (CurveSetKind(s->set, s->curve[p]).around == v + 1))
     c->distance = -c->distance;
+  if (own) {
+    ContactOutside(s->set, v, p, 0, out);
+    c->type = c->normal[0] * out[0] + c->normal[1] * out[1] > 0 ? CONTACT_INSIDE : CONTACT_OUTSIDE;
+    c->distance = PetscAbsReal(c->distance);
+  }
   size = PetscAbsReal(c->distance) > 0 ? c->distance : PetscSqrtReal(PetscSqr(out[0]) + PetscSqr(out[1]));
   for (int k = 0; k < 2; k++) c->normal[k] = (PetscAbsReal(c->distance) > 0 ? c->normal[k] : out[k]) / size;
   return PETSC_TRUE;
@@ -61,17 +80,24 @@ static PetscErrorCode ContactOffer(ContactSearch *s, const CurveContact *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The order of contacts: by point, by curve, then from near to far. */
+/* The order of the groups of contacts of which one is kept: by point, by curve, by type. */
+static int ContactGroup(const CurveContact *a, const CurveContact *b) {
+  if (a->point != b->point) return a->point < b->point ? -1 : 1;
+  if (a->curve[1] != b->curve[1]) return a->curve[1] < b->curve[1] ? -1 : 1;
+  return (a->type > b->type) - (a->type < b->type);
+}
+
+/* The order of contacts: by group, then from near to far. */
 static int ContactOrder(const void *first, const void *second) {
   const CurveContact *a = (const CurveContact *)first, *b = (const CurveContact *)second;
   const PetscReal x = PetscAbsReal(a->distance), y = PetscAbsReal(b->distance);
-  if (a->point != b->point) return a->point < b->point ? -1 : 1;
-  if (a->curve[1] != b->curve[1]) return a->curve[1] < b->curve[1] ? -1 : 1;
-  return (x > y) - (x < y);
+  const int group = ContactGroup(a, b);
+  return group ? group : (x > y) - (x < y);
 }
 
-/* Offer the contacts of points i and j, the image of j being d from i, each with the two edges at the other. */
-static PetscErrorCode ContactOfferBoth(ContactSearch *s, PetscInt i, PetscInt j, const PetscReal d[2]) {
+/* Offer the contacts of points i and j, the image of j being d from i, each with the two edges at the other. own: they
+   are of one curve, and no image. */
+static PetscErrorCode ContactOfferBoth(ContactSearch *s, PetscInt i, PetscInt j, PetscBool own, const PetscReal d[2]) {
   const PetscInt pair[2][2] = {{i, j}, {j, i}};
   PetscFunctionBeginUser;
   for (int side = 0; side < 2; side++) {
@@ -80,7 +106,7 @@ static PetscErrorCode ContactOfferBoth(ContactSearch *s, PetscInt i, PetscInt j,
     for (int k = 0; k < 2; k++) shift[k] = (side ? -d[k] : d[k]) - (s->set->X[2 * q + k] - s->set->X[2 * p + k]);
     for (int back = 0; back < 2; back++) {
       CurveContact c;
-      if (ContactMeasure(s, p, q, back ? PETSC_TRUE : PETSC_FALSE, shift, &c)) PetscCall(ContactOffer(s, &c));
+      if (ContactMeasure(s, p, q, back ? PETSC_TRUE : PETSC_FALSE, own, shift, &c)) PetscCall(ContactOffer(s, &c));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -88,13 +114,12 @@ static PetscErrorCode ContactOfferBoth(ContactSearch *s, PetscInt i, PetscInt j,
 
 static PetscBool ContactNear(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   ContactSearch *s = (ContactSearch *)context;
-  const PetscReal *X = s->set->X;
+  const PetscReal *X = s->set->X, x = d[0] - (X[2 * j] - X[2 * i]), y = d[1] - (X[2 * j + 1] - X[2 * i + 1]);
+  const PetscBool own = s->curve[i] == s->curve[j] && PetscAbsReal(x) + PetscAbsReal(y) < s->seam ? PETSC_TRUE
+                                                                                                  : PETSC_FALSE;
   if (PetscMin(s->curve[i], s->curve[j]) >= s->set->moving) return PETSC_FALSE;
-  if (s->curve[i] == s->curve[j]) { /* points of one curve count if one of them is an image */
-    const PetscReal x = d[0] - (X[2 * j] - X[2 * i]), y = d[1] - (X[2 * j + 1] - X[2 * i + 1]);
-    if (PetscAbsReal(x) + PetscAbsReal(y) < s->seam) return PETSC_FALSE;
-  }
-  s->error = ContactOfferBoth(s, i, j, d);
+  if (own && s->curve[i] >= s->soft) return PETSC_FALSE;
+  s->error = ContactOfferBoth(s, i, j, own, d);
   return s->error ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -124,16 +149,17 @@ static PetscBool CurvesAreApart(const CurveSet *set, PetscReal reach) {
   return PETSC_TRUE;
 }
 
-PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts) {
+PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt soft, const PetscReal ds[], PetscInt *n,
+                             CurveContact **contacts) {
   const PetscInt points = set->start[set->curves], *part = set->part;
   const PetscInt first[2] = {part ? set->start[part[0]] : 0, part ? set->start[part[1]] : points};
   /* a point nearer than reach to an edge is nearer than this to one end of the edge */
   const PetscReal apart = PetscHypotReal(reach, 0.5 * CurveLongestEdge(set));
-  ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL};
+  ContactSearch s = {.set = set, .reach = reach, .seam = PETSC_MAX_REAL, .soft = soft, .ds = ds};
   PetscFunctionBeginUser;
   *n = 0;
   *contacts = NULL;
-  if (CurvesAreApart(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!soft && CurvesAreApart(set, apart)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int d = 0; d < 2; d++)
     if (set->period[d] > 0) s.seam = PetscMin(s.seam, 0.5 * set->period[d]);
   PetscCall(PetscMalloc1(points, &s.curve));
@@ -143,8 +169,7 @@ PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, 
   PetscCall(s.error);
   if (s.count) qsort(s.contact, (size_t)s.count, sizeof(*s.contact), ContactOrder);
   for (PetscInt k = 0; k < s.count; k++)
-    if (!*n || s.contact[k].point != s.contact[*n - 1].point || s.contact[k].curve[1] != s.contact[*n - 1].curve[1])
-      s.contact[(*n)++] = s.contact[k];
+    if (!*n || ContactGroup(&s.contact[k], &s.contact[*n - 1])) s.contact[(*n)++] = s.contact[k];
   *contacts = s.contact;
   PetscCall(PetscFree(s.curve));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,7 +188,7 @@ static PetscErrorCode PolygonGaps(const CurveSet *set, PetscReal reach, PetscInt
   CurveContact *c;
   PetscInt count, kept = 0;
   PetscFunctionBeginUser;
-  PetscCall(CurveContacts(set, reach, &count, &c));
+  PetscCall(CurveContacts(set, reach, 0, NULL, &count, &c));
   PetscCall(PetscMalloc1(count, gaps));
   for (PetscInt k = 0; k < count; k++) {
     const PetscInt v = c[k].curve[0], w = c[k].curve[1];

@@ -1,4 +1,4 @@
-/* Distances of curves from one another, from images and from walls.
+/* Distances of curves from one another, from images, from other parts of themselves and from walls.
 
    Points are sorted into a list of cells, and each is compared with the edges at points within reach, so that the time
    is in proportion to the number of points. The inside of a curve is on its left: a closed curve runs
@@ -7,18 +7,27 @@
 #pragma once
 #include "curve/kind.h"
 
-/* A point and the edge of another curve that is nearest to the point. */
+/* What lies between a point and an edge: fluid between two curves or a curve and an image, or fluid inside or outside
+   one curve whose parts are near. */
+typedef enum { CONTACT_BETWEEN, CONTACT_INSIDE, CONTACT_OUTSIDE } ContactType;
+
+/* A point and the edge of a curve that is nearest to the point. */
 typedef struct {
   PetscInt point, edge[2]; /* numbers of the point and of the ends of the edge */
-  PetscInt curve[2];       /* curve of the point, curve of the edge; the same one: the edge is that of an image */
-  PetscReal at;            /* nearest place on the edge: weight `at` of its second end, 1 - at of its first */
-  PetscReal distance;      /* length; negative: the point is inside */
-  PetscReal normal[2];     /* unit, from the edge to the outside of its curve: point = edge + distance normal */
+  PetscInt curve[2];       /* curve of the point, curve of the edge */
+  ContactType type;
+  PetscReal at;        /* nearest place on the edge: weight `at` of its second end, 1 - at of its first */
+  PetscReal distance;  /* length; negative: the point is inside another curve */
+  PetscReal normal[2]; /* unit, from the edge to the outside of another curve or into the fluid between two parts of one
+                          curve: point = edge + distance normal */
 } CurveContact;
 
 /* CurveContacts - for each point, in order, and each other curve with an edge nearer than reach (length) the nearest
-   edge. The caller frees contacts[n] (PetscFree). Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt *n, CurveContact **contacts);
+   edge; on the first `soft` curves, of point spacings ds[soft], also the nearest edges of the point's own curve across
+   the inside and across the outside, of those that are twice the reach from the point along the curve. The caller frees
+   contacts[n] (PetscFree). Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode CurveContacts(const CurveSet *set, PetscReal reach, PetscInt soft, const PetscReal ds[],
+                                          PetscInt *n, CurveContact **contacts);
 
 /* The least distance of two curves; negative where a point of one is inside the other. */
 typedef struct {

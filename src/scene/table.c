@@ -207,7 +207,7 @@ static const OptionRow table[] = {
   {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled: each step aims at edges of their first length", &need_coupled},
   {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not", &need_bodies},
   {"-coupling_box_part", OPT_BOOL, AT(coupling.box_part), "true", "true|false", "with the exact near field: the grid's error of second order in what walls and periodic images do is taken off", &need_bodies},
-  {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled: K, stress that pushes membranes from one another and from walls, K (1 - d/D) at a distance d, and free obstacles from them, from one another and from walls (length^2/time^2); 0: none", &need_heavy},
+  {"-contact_repulsion", OPT_REAL, AT(repulsion.stress), "0", ">=0", "coupled: K, stress that pushes membranes from one another, from other parts of themselves and from walls, K (1 - d/D) at a distance d, and free obstacles from them, from one another and from walls (length^2/time^2); 0: none", &need_heavy},
   {"-contact_repulsion_range", OPT_REAL, AT(repulsion.range), "0", ">=0", "D, up to which it acts (length); 0: 1.5 times the longest mean edge", &need_repulsion},
   {"-contact_adhesion", OPT_REAL, AT(repulsion.adhesion), "0", ">=0", "with a repulsion: W, energy a length of membranes that stick together at the distance D (length^3/time^2); 0: none", &need_repulsion},
   {"-contact_adhesion_range", OPT_REAL, AT(repulsion.band), "0", ">=0", "B, width of the band from D to D + B in which they are drawn together (length); 0: D", &need_adhesion},

@@ -54,3 +54,24 @@ def test_restart_is_the_straight_run(tmp_path):
     run_petves(tmp_path / "part", options.format(0.04))
     part = run_petves(tmp_path / "part", options.format(0.08) + f" -restart {tmp_path}/part/checkpoint.h5", 2).series
     same_columns(whole, part, 1e-9)
+
+
+def least_inside(run):
+    """Least distance of the vesicle's last markers that are an eighth of its length or more apart along it."""
+    x = run.saved("vesicle/markers")[-1] @ [1, 1j]
+    steps = np.abs(np.subtract.outer(np.arange(len(x)), np.arange(len(x))))
+    far = np.minimum(steps, len(x) - steps) >= len(x) // 8
+    return np.abs(np.subtract.outer(x, x))[far].min()
+
+
+def test_sides_of_a_thin_cell_stay_apart(tmp_path):
+    """The middle of a thin vesicle that becomes a dumbbell closes slowly; a repulsion holds it, and energy still falls."""
+    options = "-fluid_inertia none -vesicle_count 1 -vesicle_area 0.6 -vesicle_reduced_area 0.2 -vesicle_markers 61 "
+    options += "-vesicle_bending 0.05 -domain_bc_x periodic -domain_box -2,2,-2,2 -domain_cells 32,32 "
+    options += "-time_step 0.5 -time_end 20 "
+    free = run_petves(tmp_path / "free", options)
+    held = run_petves(tmp_path / "held", options + "-contact_repulsion 30 -contact_repulsion_range 0.15")
+    series = held.series
+    energy = series["energy_bending"] + series["energy_contact"]
+    assert (np.diff(energy) < 0).all() and series["energy_contact"].min() > 0
+    assert least_inside(free) < 0.1 and 0.13 < least_inside(held) < 0.15

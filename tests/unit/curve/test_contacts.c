@@ -55,7 +55,7 @@ static void CheckNearest(PetscReal period_x, PetscReal period_y, PetscReal reach
   CurveContact *c;
   Place(CURVES, circles, POINTS, X);
   const CurveSet set = {CURVES, CURVES, start, NULL, X, period, PETSC_FALSE};
-  TestCall(CurveContacts(&set, reach, &n, &c));
+  TestCall(CurveContacts(&set, reach, 0, NULL, &n, &c));
   for (PetscInt p = 0; p < CURVES * POINTS; p++)
     for (PetscInt w = 0; w < CURVES; w++)
       wanted += Distance(X + 2 * p, POINTS, X + 2 * start[w], period, p / POINTS == w ? PETSC_TRUE : PETSC_FALSE) <
@@ -76,6 +76,63 @@ static void CheckNearest(PetscReal period_x, PetscReal period_y, PetscReal reach
   CHECK(n == wanted && off < 1e-13 && away < 1e-13,
         "periods %g, %g: %d contacts nearer than %g (%d), off by %.1g, feet by %.1g", period_x, period_y, (int)n, reach,
         (int)wanted, off, away);
+  TestCall(PetscFree(c));
+}
+
+#define FOLDED 90
+
+/* Of a thin curve bent to a ring that is open by a narrow gap, each point has the nearest edge across the inside and
+   that across the outside, of those at least twice the reach from it along the curve; neither curves that may not touch
+   themselves nor a circle have any. */
+static void CheckOwn(PetscReal thick, PetscReal open, PetscReal reach) {
+  const PetscInt start[2] = {0, FOLDED};
+  const PetscReal none[2] = {0, 0}, ds = 0.07;
+  PetscReal X[2 * FOLDED], off = 0, away = 0;
+  PetscInt n, idle, wanted = 0, types[3] = {0, 0, 0};
+  CurveContact *c;
+  for (PetscInt k = 0; k < FOLDED; k++) {
+    const PetscReal t = 2 * PETSC_PI * (PetscReal)k / FOLDED, r = 0.5 + 0.5 * thick * PetscSinReal(t),
+                    phi = (open - PETSC_PI) * PetscCosReal(t);
+    X[2 * k] = r * PetscCosReal(phi);
+    X[2 * k + 1] = r * PetscSinReal(phi);
+  }
+  const CurveSet set = {1, 1, start, NULL, X, none, PETSC_FALSE};
+  TestCall(CurveContacts(&set, reach, 0, NULL, &idle, &c));
+  TestCall(PetscFree(c));
+  TestCall(CurveContacts(&set, reach, 1, &ds, &n, &c));
+  for (PetscInt p = 0, found = 0; p < FOLDED; p++) {
+    const PetscReal *before = X + 2 * ((p + FOLDED - 1) % FOLDED), *after = X + 2 * ((p + 1) % FOLDED),
+                    out[2] = {after[1] - before[1], before[0] - after[0]};
+    PetscReal least[2] = {reach, reach};
+    for (PetscInt q = 0; q < FOLDED; q++) {
+      const PetscInt next = (q + 1) % FOLDED, on = (q - p + FOLDED) % FOLDED;
+      const PetscReal e[2] = {X[2 * next] - X[2 * q], X[2 * next + 1] - X[2 * q + 1]},
+                      d[2] = {X[2 * p] - X[2 * q], X[2 * p + 1] - X[2 * q + 1]},
+                      at = PetscMax(0, PetscMin(1, (d[0] * e[0] + d[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])));
+      const PetscReal foot[2] = {d[0] - at * e[0], d[1] - at * e[1]};
+      const int side = foot[0] * out[0] + foot[1] * out[1] > 0 ? 0 : 1;
+      if (PetscMin(on, FOLDED - 1 - on) * ds >= 2 * reach)
+        least[side] = PetscMin(least[side], PetscHypotReal(foot[0], foot[1]));
+    }
+    for (int side = 0; side < 2; side++) {
+      if (least[side] == reach) continue;
+      wanted++;
+      while (found < n && (c[found].point < p || (c[found].point == p && (int)c[found].type < 1 + side))) found++;
+      off = PetscMax(off, found < n && c[found].point == p ? PetscAbsReal(c[found].distance - least[side]) : 1);
+    }
+  }
+  for (PetscInt k = 0; k < n; k++) {
+    types[c[k].type]++;
+    for (int dir = 0; dir < 2; dir++)
+      away = PetscMax(away, PetscAbsReal(X[2 * c[k].point + dir] - (1 - c[k].at) * X[2 * c[k].edge[0] + dir] -
+                                         c[k].at * X[2 * c[k].edge[1] + dir] - c[k].distance * c[k].normal[dir]));
+  }
+  CHECK(n == wanted && !idle && !types[CONTACT_BETWEEN] && off < 1e-13 && away < 1e-13 &&
+            (types[CONTACT_INSIDE] == FOLDED) == (thick < reach) &&
+            (types[CONTACT_OUTSIDE] > 20) == (open < 0.5 * reach),
+        "a curve %g thick, open by %g: %d points across the inside, %d across the outside (%d), off by %.1g, feet by "
+        "%.1g",
+        thick, open, (int)types[CONTACT_INSIDE], (int)types[CONTACT_OUTSIDE], (int)wanted, off, away);
   TestCall(PetscFree(c));
 }
 
@@ -225,6 +282,7 @@ void Facts(void) {
     CheckLine(k ? 2.5 : 0.3, k ? PETSC_TRUE : PETSC_FALSE);
   }
   CheckSolid(CURVE_SPANNING, PETSC_TRUE, 0.02);
+  for (int k = 0; k < 4; k++) CheckOwn(k & 1 ? 0.3 : 0.15, k & 2 ? 0.5 : 0.06, 0.2);
   CheckOpen();
   CheckAlone();
   CheckFilm(PETSC_FALSE, 1, 0, 1, 0.1);
