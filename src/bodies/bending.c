@@ -9,35 +9,16 @@ static void CurveAddSecondDifference(PetscInt n, PetscReal w, const PetscScalar 
   }
 }
 
-/* Y += B X. */
+/* Y += B X; X is moved to the origin, far from which a matrix would lose digits. */
 static void BendingCurvature(Membrane m, PetscInt v, const PetscScalar X[], PetscScalar Y[]) {
   const PetscInt n = LayoutCount(m->layout, v);
-  PetscScalar *slope = m->work.memory;
-  SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, Y);
-  if (!m->memory) return;
-  (void)PetscArrayzero(slope, 2 * n);
-  SpectralDerivative(m->spectral[v], 1, n / m->arc[v], X, slope);
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal kappa = m->memory[m->layout->start[v] + k];
-    Y[2 * k] += kappa * slope[2 * k + 1];
-    Y[2 * k + 1] -= kappa * slope[2 * k];
+  PetscScalar *near = m->work.memory;
+  if (!m->memory) {
+    SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), X, Y);
+    return;
   }
-}
-
-PetscErrorCode MembraneMemoryMatrix(Membrane m, PetscInt v, PetscReal **BB) {
-  const PetscInt n = 2 * LayoutCount(m->layout, v);
-  PetscReal *unit, *B;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * n, BB));
-  PetscCall(PetscCalloc2(n, &unit, n * n, &B));
-  for (PetscInt k = 0; k < n; k++) {
-    unit[k] = PetscSqrtReal(m->ds[v]);
-    BendingCurvature(m, v, unit, B + n * k);
-    unit[k] = 0;
-  }
-  PetscCall(DenseProduct(PETSC_TRUE, n, n, n, B, B, *BB));
-  PetscCall(PetscFree2(unit, B));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 2 * n; k++) near[k] = X[k] - X[k % 2];
+  (void)DenseMultAdd(PETSC_FALSE, 2 * n, 2 * n, 1, m->B[v], near, Y);
 }
 
 void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
@@ -45,9 +26,9 @@ void MembraneVesicleBending(Membrane m, PetscInt v, PetscReal alpha, const Petsc
   PetscScalar *curvature = m->work.bending;
   alpha *= m->part[v];
   if (m->memory) {
-    PetscScalar *near = m->work.bending; /* X close to the origin; far from it digits would be lost */
-    for (PetscInt k = 0; k < 2 * n; k++) near[k] = X[k] - X[k % 2];
-    (void)DenseMultAdd(PETSC_FALSE, 2 * n, 2 * n, alpha, m->BB[v], near, F);
+    (void)PetscArrayzero(curvature, 2 * n);
+    BendingCurvature(m, v, X, curvature);
+    (void)DenseMultAdd(PETSC_TRUE, 2 * n, 2 * n, alpha * m->ds[v], m->B[v], curvature, F);
     return;
   }
   if (m->derivative != DERIVATIVE_FD) {
@@ -89,19 +70,21 @@ static PetscErrorCode BendingRate(void *context, PetscReal alpha, const PetscSca
 /* D4 is circulant: all columns are the first one, shifted. B^T B is not. */
 static PetscErrorCode BendingDense(void *context, PetscInt v, PetscReal alpha, PetscReal K[]) {
   const Membrane m = (Membrane)context;
-  const PetscInt n = LayoutCount(m->layout, v);
-  PetscReal *unit, *first;
+  const PetscInt n = 2 * LayoutCount(m->layout, v), columns = m->memory ? n : 1;
+  PetscReal *unit, *B;
   PetscFunctionBeginUser;
   alpha *= m->bending;
+  PetscCall(PetscCalloc2(n, &unit, n * columns, &B));
   if (m->memory) {
-    for (PetscInt k = 0; k < 4 * n * n; k++) K[k] += alpha * m->part[v] * m->BB[v][k];
-    PetscFunctionReturn(PETSC_SUCCESS);
+    const DenseView root = {B, n, n, n};
+    for (PetscInt k = 0; k < n * n; k++) B[k] = PetscSqrtReal(alpha * m->part[v] * m->ds[v]) * m->B[v][k];
+    PetscCall(DenseProductWithin(PETSC_TRUE, root, root, 1, K, n));
+  } else {
+    unit[0] = 1;
+    MembraneVesicleBending(m, v, alpha, unit, B);
+    DenseAddCirculant(n / 2, B, n, K);
   }
-  PetscCall(PetscCalloc2(2 * n, &unit, 2 * n, &first));
-  unit[0] = 1;
-  MembraneVesicleBending(m, v, alpha, unit, first);
-  DenseAddCirculant(n, first, 2 * n, K);
-  PetscCall(PetscFree2(unit, first));
+  PetscCall(PetscFree2(unit, B));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,6 +21,26 @@ static void MembraneCurvature(Membrane m, PetscInt v, PetscReal part, const Pets
   for (PetscInt k = 0; k < 2 * n; k += 2) kappa[k / 2] = part * (slope[k] * second[k + 1] - slope[k + 1] * second[k]);
 }
 
+/* The columns of B = D2 - kappa J D1 of one vesicle. */
+static PetscErrorCode MembraneMemoryMatrix(Membrane m, PetscInt v, const PetscReal kappa[], PetscReal **B) {
+  const PetscInt n = LayoutCount(m->layout, v);
+  PetscScalar *unit = m->work.bending, *slope = m->work.memory;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(4 * n * n, B));
+  for (PetscInt k = 0; k < 2 * n; k++) {
+    PetscReal *column = *B + 2 * n * k;
+    for (PetscInt i = 0; i < 2 * n; i++) unit[i] = i == k;
+    (void)PetscArrayzero(slope, 2 * n);
+    SpectralDerivative(m->spectral[v], 1, n / m->arc[v], unit, slope);
+    SpectralDerivative(m->spectral[v], 2, PetscSqr(n / m->arc[v]), unit, column);
+    for (PetscInt i = 0; i < n; i++) {
+      column[2 * i] += kappa[i] * slope[2 * i + 1];
+      column[2 * i + 1] -= kappa[i] * slope[2 * i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMembrane *given, Membrane *out) {
   const Material *material = given->material;
   const PetscInt vesicles = layout->bodies;
@@ -44,7 +64,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
   PetscCall(PetscMalloc1(4 * layout->M, &w->memory));
   for (PetscInt v = 0; v < vesicles && !m->memory; v++)
     if (material[v].memory > 0) PetscCall(PetscMalloc1(layout->M, &m->memory));
-  if (m->memory) PetscCall(PetscCalloc1(vesicles, &m->BB));
+  if (m->memory) PetscCall(PetscCalloc1(vesicles, &m->B));
   for (PetscInt v = 0; v < vesicles; v++) {
     const PetscInt n = LayoutCount(layout, v);
     const PetscReal *rest = (given->rest_X ? given->rest_X : X) + 2 * layout->start[v];
@@ -61,7 +81,7 @@ PetscErrorCode MembraneCreate(Layout layout, const PetscReal X[], const SceneMem
     if (material[v].viscosity > 0) m->viscous = PETSC_TRUE;
     if (m->memory) {
       MembraneCurvature(m, v, material[v].memory, rest, m->memory + layout->start[v]);
-      PetscCall(MembraneMemoryMatrix(m, v, &m->BB[v]));
+      PetscCall(MembraneMemoryMatrix(m, v, m->memory + layout->start[v], &m->B[v]));
     }
     m->part[v] = m->bending > 0 ? material[v].bending / m->bending : 1;
   }
@@ -74,9 +94,9 @@ PetscErrorCode MembraneDestroy(Membrane *membrane) {
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < m->layout->bodies; v++) {
     PetscCall(SpectralDestroy(&m->spectral[v]));
-    if (m->BB) PetscCall(PetscFree(m->BB[v]));
+    if (m->B) PetscCall(PetscFree(m->B[v]));
   }
-  PetscCall(PetscFree(m->BB));
+  PetscCall(PetscFree(m->B));
   PetscCall(PetscFree7(m->ds, m->A0, m->L0, m->spectral, m->arc, m->part, m->material));
   PetscCall(PetscFree(m->work.memory));
   PetscCall(PetscFree(m->memory));

@@ -32,7 +32,7 @@ struct _p_Membrane {
   PetscReal permeability; /* P (time/length); 0: none */
   PetscReal osmotic[2];   /* pressures inside and outside (length^2/time^2) */
   PetscReal *memory;      /* [M] curvature that bending prefers (1/length); NULL: none */
-  PetscReal **BB;         /* [vesicles] their matrices (MembraneMemoryMatrix); NULL: none */
+  PetscReal **B;          /* [vesicles][2n][2n] B of bending.h with a memory; NULL likewise */
   DerivativeType derivative;
   Spectral *spectral; /* [vesicles] */
   PetscReal *arc;     /* [vesicles] arc length at rest, spectrally accurate */
@@ -47,10 +47,6 @@ static inline PetscBool MembraneStretches(Membrane membrane, PetscInt vesicle) {
   return membrane->material[vesicle].law != LAW_INEXTENSIBLE ? PETSC_TRUE : PETSC_FALSE;
 }
 PETSC_EXTERN PetscErrorCode MembraneDestroy(Membrane *membrane);
-
-/* MembraneMemoryMatrix - B^T B ds of the bending (bending.h) of one vesicle with a shape memory, a new array [2n][2n].
- */
-PETSC_EXTERN PetscErrorCode MembraneMemoryMatrix(Membrane membrane, PetscInt vesicle, PetscReal **BB);
 
 /* MembraneEdges - edges e = D X of one vesicle: chords e_k = X_k - X_{k-1}, or spectral derivatives dX/dk.
    MembraneEdgesTranspose - Y += alpha D^T F. */
