@@ -155,10 +155,11 @@ run: deps ## run the default scene (or SCENE=file.opts) on 2 ranks and draw it
 	mpirun -n $(RANKS) $(BIN)/petves -options_file $(SCENE) -output_dir $(OUT) -output_overwrite
 	PYTHONPATH=python $(PYTHON) -m petves plot $(OUT)
 
+PYTEST = PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
+  $(PYTHON) -m pytest -p no:cacheprovider -q
 test: test-deps ## run every test; ends with "N passed, N failed"
 	@$(MAKE) --no-print-directory -j$(WORKERS) all tests $(BUILD)/site/.packages $(BUILD)/site-tools/.packages
-	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) \
-	  $(PYTHON) -m pytest -p no:cacheprovider -q -n $(WORKERS) --dist loadgroup tests $(TESTFLAGS)
+	$(PYTEST) -n $(WORKERS) --dist loadgroup tests $(TESTFLAGS)
 
 bench: deps ## speed on this machine, into bench/results and docs/performance (a quarter of an hour; QUICK=1: 2, into out/bench)
 	@$(MAKE) --no-print-directory all benches
@@ -200,14 +201,12 @@ unseen: deps ## -scheme_auto on scenes it was not calibrated by: docs/speed_accu
 
 fuzz: test-deps ## options, files and environments at random, then scenes mirrored, moved, in other units (SEED=1 CASES=2000 SCENES=200)
 	@$(MAKE) --no-print-directory all
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:.:tests/support $(PYTHON) tests/robustness/fuzz.py --cases $(or $(CASES),2000) --seed $(or $(SEED),1) \
-	  --ranks $(or $(FUZZ_RANKS),1 1 1 2)
-	PETVES=$(CURDIR)/$(BIN)/petves PYTHONPATH=python:.:tests/support $(PYTHON) tests/robustness/metamorphic.py --scenes $(or $(SCENES),200) --seed $(or $(SEED),1)
+	FUZZ_SEED=$(or $(SEED),1) FUZZ_CASES=$(or $(CASES),2000) FUZZ_SCENES=$(or $(SCENES),200) FUZZ_CHANGES=99 $(PYTEST) -n $(WORKERS) \
+	  tests/robustness/test_fuzz.py tests/robustness/test_metamorphic.py $(TESTFLAGS)
 
 memcheck: test-deps ## every kind of scene under valgrind's memcheck, on 1 and 2 ranks (minutes; SANITIZE=1: the sanitizers instead)
 	@$(MAKE) --no-print-directory all tests
-	PETVES=$(CURDIR)/$(BIN)/petves PETVES_TESTS=$(CURDIR)/$(BUILD)/tests PYTHONPATH=python:. SANITIZE=$(SANITIZE) MEMCHECK=1 \
-	  $(PYTHON) -m pytest -p no:cacheprovider -q tests/robustness/test_valgrind.py
+	MEMCHECK=1 $(PYTEST) tests/robustness/test_valgrind.py
 
 MKDOCS = NO_MKDOCS_2_WARNING=1 JUPYTER_PATH=$(BUILD)/site-tools/share/jupyter PYTHONPATH=$(BUILD)/site-tools $(PYTHON) -m mkdocs
 docs: site-tools ## README and the pages of docs/ as a site that is read offline: build/docs/index.html

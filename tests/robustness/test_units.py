@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 from harness import PETVES, mpirun, read_series
-from metamorphic import OPTIONS
+from test_metamorphic import OPTIONS
 
 from petves.dataset import unit
 

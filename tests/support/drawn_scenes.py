@@ -1,5 +1,5 @@
 """Coupled scenes of a few bodies on a coarse grid, drawn at random: boundaries, flows, schemes, inertia, obstacles,
-contrast, gravity, contact, membranes that stretch, remember and leak. Their curves are in files, so that tests/robustness/metamorphic.py has the same markers in each change.
+contrast, gravity, contact, membranes that stretch, remember and leak. Their curves are in files, so that tests/robustness/test_metamorphic.py has the same markers in each change.
 """
 
 from __future__ import annotations
