@@ -43,8 +43,10 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(items):
+    """Those marked alone are first, while no other test has to end before them."""
     order = {f"test_{name}": place for place, name in enumerate(LONG)}
-    items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
+    place = lambda item: -1 if item.get_closest_marker("alone") else order.get(item.path.stem, len(LONG))
+    items.sort(key=place)
 
 
 def pytest_terminal_summary(terminalreporter):

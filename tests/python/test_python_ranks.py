@@ -23,9 +23,7 @@ def tell(*words):
 
 def run_script(tmp_path: Path, body: str, ranks: int):
     """Run a script on some ranks; returns the finished process, and what each rank tells, in the order of the ranks."""
-    script = tmp_path / "script.py"
-    script.write_text(HEAD + body)
-    command, clock = ["/usr/bin/python3", str(script), str(tmp_path / "run")], ("--timeout", str(TIMEOUT))
+    command, clock = ["/usr/bin/python3", "-c", HEAD + body, str(tmp_path / "run")], ("--timeout", str(TIMEOUT))
     done = mpirun(command, ranks, 2 * TIMEOUT, clock, **PACKAGE)
     assert "Timeout" not in done.stderr and "time limit" not in done.stderr, f"it hangs\n{done.stdout}{done.stderr}"
     return done, [line.split(maxsplit=1)[1] for line in sorted(done.stdout.splitlines())]

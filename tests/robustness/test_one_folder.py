@@ -214,8 +214,8 @@ print(sim.run(callback=wait))
 @pytest.mark.parametrize("pauses, status", [((0, 0.1), 0), ((0, 1.2), -signal.SIGTERM)])
 def test_second_signal_ends_the_process(pauses, status, tmp_path):
     """A second later; one that comes sooner is the same request, which mpirun and the batch system both send."""
-    (tmp_path / "script.py").write_text(TWICE.format(simulation=simulation(SCENE), pauses=pauses))
-    done = run_python(tmp_path / "script.py", TMPDIR=str(tmp_path))
+    code = TWICE.format(simulation=simulation(SCENE), pauses=pauses)
+    done = run_python(code, good=False, TMPDIR=str(tmp_path))
     assert done.returncode == status, done.stdout + done.stderr
     assert done.stdout.split() == ([] if status else ["stopped"])
 

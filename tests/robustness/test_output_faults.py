@@ -126,11 +126,10 @@ def test_disk_that_is_full_from_python(call, times, steps, ranks, tmp_path):
     """At the end, as the file is closed to which a row could not be written, and in a step; calls after it return.
     The checkpoint before it is good."""
     options = f"{SCENE} -time_end 0.2 -output_every {0.08 if times == 2 else 10} -checkpoint_every 2"
-    folder, script = tmp_path / "run", tmp_path / "script.py"
+    folder = tmp_path / "run"
     made = simulation(options, output_dir=folder)
-    script.write_text(FULL.format(simulation=made, call=call, times=times, steps=steps))
-    done = run_python(script, ranks=ranks)
-    assert done.returncode == 0 and not without_mpirun(done.stderr), done.stdout + done.stderr
+    done = run_python(FULL.format(simulation=made, call=call, times=times, steps=steps), ranks=ranks)
+    assert not without_mpirun(done.stderr), done.stdout + done.stderr
     assert attribute(folder / "checkpoint.h5") == 2
     again = run_petves(tmp_path / "again", f"{SCENE} -time_end 0.08 -restart {folder}/checkpoint.h5", ranks)
     assert again.series["step"].tolist() == [2, 3, 4]
@@ -162,11 +161,8 @@ def test_a_frame_costs_the_same_at_any_time(tmp_path):
     was there stays, and it is a whole document after each frame."""
     frames, out = 300, str(tmp_path / "counts.json")
     options = f"{PAPER} {SCENE} -domain_cells 16,16 -vesicle_semi_axes 0.4,0.4 -time_step 1e-3 -output_every 1e-3"
-    script = tmp_path / "script.py"
     call = simulation(f"{options} -time_end 10 -checkpoint_every 0 -vesicle_spacing 1.75", output_dir=tmp_path / "run")
-    script.write_text(COUNT.format(simulation=call, frames=frames, out=out))
-    done = run_python(script)
-    assert done.returncode == 0, done.stdout + done.stderr
+    run_python(COUNT.format(simulation=call, frames=frames, out=out))
     written, read, inodes, texts = zip(*json.loads(Path(out).read_text()))
     early, late = slice(100, 160), slice(240, 300)  # HDF5's trees of frames get their second level before frame 100
     assert np.mean(written[late]) < 1.05 * np.mean(written[early]), (written[early], written[late])
@@ -210,11 +206,8 @@ def test_run_xmf_after_a_restart(straight, tmp_path):
 @pytest.mark.skipif(SANITIZE, reason="Python is not built with the sanitizers")
 def test_run_xmf_when_a_run_goes_on_after_its_end(straight, tmp_path):
     """From Python: the last frame of run.xmf is written over, also by a shorter text."""
-    script = tmp_path / "script.py"
     call = simulation(f"{SCENE} -time_end 0.06", output_dir=tmp_path / "run")
-    script.write_text(f"import petves\nsim = {call}\nsim.run()\nsim.run(until=0.12)\nsim.close()\n")
-    done = run_python(script)
-    assert done.returncode == 0, done.stdout + done.stderr
+    run_python(f"import petves\nsim = {call}\nsim.run()\nsim.run(until=0.12)\nsim.close()\n")
     ours, theirs = times_of(tmp_path / "run")
     assert ours == theirs == pytest.approx([0, 0.04, 0.08, 0.12])
     assert (tmp_path / "run" / "run.xmf").read_text() == (straight(1).folder / "run.xmf").read_text()

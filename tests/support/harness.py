@@ -77,9 +77,13 @@ def run_tool(*words, folder=None, **environment: str) -> subprocess.CompletedPro
     return subprocess.run(words, env={**os.environ, **ENVIRONMENT, **paths}, **how)
 
 
-def run_python(script: Path, *words: str, ranks: int = 1, timeout: float = 300, **environment: str):
-    """Run a Python script on some ranks, with this package and the library of the program under test."""
-    return mpirun(["/usr/bin/python3", str(script), *words], ranks, timeout, **PACKAGE, **environment)
+def run_python(script: Path | str, *words: str, ranks: int = 1, good: bool = True, **environment: str):
+    """Run a Python script, or a text of one, on some ranks, with this package and the library of the program under test; with
+    `good` it must end well."""
+    start = [str(script)] if isinstance(script, Path) else ["-c", script]
+    done = mpirun(["/usr/bin/python3", *start, *words], ranks, **PACKAGE, **environment)
+    assert not good or done.returncode == 0, done.stdout + done.stderr
+    return done
 
 
 def simulation(options: str, **more) -> str:
