@@ -177,7 +177,7 @@ def test_no_module_of_the_current_folder(folder, tmp_path):
     for python_path in ({}, {"PYTHONPATH": ""}):
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         how = dict(env=environment | python_path, cwd=tmp_path / "here", capture_output=True)
-        done = subprocess.run([PETVES, "plot", folder], **how)
+        done = subprocess.run([PETVES, "report", folder], **how)
         assert done.returncode == 0, done.stderr
 
 

@@ -168,13 +168,17 @@ def test_a_frame_costs_the_same_at_any_time(tmp_path):
     assert np.mean(written[late]) < 1.05 * np.mean(written[early]), (written[early], written[late])
     assert np.mean(read[late]) < 1.1 * np.mean(read[early]) + 100, (read[early], read[late])
     assert len(set(inodes)) == 1
-    for k, text in enumerate(texts):
+    for k, text in [*enumerate(texts)][::20]:
         names = [grid.get("Name").split()[1] for grid in ET.fromstring(text).findall("Domain/Grid/Grid")]
         assert names == [str(n) for n in range(k + 2)]
-    head = texts[0].index("<Xdmf")
+    head, foot = texts[0].index("<Xdmf"), texts[0][texts[0].rindex("</Grid>") :]
     for one, two in zip(texts, texts[1:]):
         end = one.rindex("</Grid>")
-        assert one[head:end] == two[head:end] and 0 < len(two) - len(one) < 2 * (len(texts[1]) - len(texts[0]))
+        assert (
+            one[head:end] == two[head:end]
+            and two.endswith(foot)
+            and 0 < len(two) - len(one) < 2 * (len(texts[1]) - len(texts[0]))
+        )
 
 
 def times_of(folder: Path) -> tuple[list[float], list[float]]:
