@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from harness import PETVES, mpirun, run_petves
+from harness import run_petves
 
 from studies.common.curves import last_markers
 from studies.common.paper import SHEAR_FREE
@@ -90,6 +90,4 @@ def test_step_for_an_error():
 def test_cases_of_the_study_are_scenes(order, tmp_path):
     """An option that a scene does not use stops it: a start of order 1 for instance."""
     case = study.energy(1, order, 0.01)
-    options = case.options | {"-time_end": "0.02", "-output_dir": str(tmp_path / "run")}
-    done = mpirun([PETVES, *(word for option in options.items() for word in option)], 1)
-    assert done.returncode == 0, done.stderr
+    run_petves(tmp_path, [word for option in (case.options | {"-time_end": "0.02"}).items() for word in option])

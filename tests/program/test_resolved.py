@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import PETVES, mpirun
+from harness import PETVES, mpirun, run_petves
 from restarts import without_wall
 
 
@@ -28,16 +28,13 @@ def test_resolved_options_repeat_the_run(name, tmp_path, monkeypatch):
     assert without_wall(Path(name)) == without_wall(first)
 
 
-def test_poiseuille_flow_goes_from_wall_to_wall(tmp_path, monkeypatch):
+def test_poiseuille_flow_goes_from_wall_to_wall(tmp_path):
     """Its half width and its middle are those of walls in y, unless they are given; without walls they stay."""
-    monkeypatch.chdir(tmp_path)
     channel = "-domain_box 0,2,1,2 -domain_cells 48,24 -domain_bc_x periodic -flow_type poiseuille -vesicle_shape none -time_end 0"
     for words, half_width, middle in (
         ("-domain_bc_y wall", 0.5, 1.5),
         ("-flow_half_width 4 -flow_center_y 0", 4, 0),
         ("-domain_bc_y periodic", 3, 0),
     ):
-        done = mpirun([PETVES, *channel.split(), *words.split(), "-output_dir", "out", "-output_overwrite"], 1)
-        assert done.returncode == 0, done.stderr
-        lines = dict(line.split(" ", 1) for line in Path("out/resolved.opts").read_text().splitlines()[1:])
+        lines = run_petves(tmp_path / "out", f"{channel} {words} -output_overwrite").resolved
         assert (float(lines["-flow_half_width"]), float(lines["-flow_center_y"])) == (half_width, middle)

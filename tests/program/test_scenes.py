@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from harness import PETVES, ROOT, Run, mpirun
+from harness import ROOT, run_petves
 
 from petves.run import Run as Files
 from studies.common.curves import at, radius
@@ -21,10 +21,7 @@ RANKS |= {
 
 def run_file(name, folder, options="", ranks=1):
     """Run a file of runs/ as it is, but for the options given."""
-    words = ["-options_file", str(ROOT / "runs" / name), "-output_dir", str(folder), *options.split()]
-    done = mpirun([PETVES, *words], ranks, 300)
-    assert done.returncode == 0, f"{name}\n{done.stdout}\n{done.stderr}"
-    return Run(folder, done.returncode, done.stdout, done.stderr)
+    return run_petves(folder, f"-options_file {ROOT / 'runs' / name} {options}", ranks)
 
 
 @pytest.mark.parametrize("name", RANKS)

@@ -1,14 +1,14 @@
 """Tracers: exact paths at second order, vesicles that keep what is in them, restarts and ranks, what the tools read."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
-from harness import PETVES, ROOT, mpirun, run_petves
+from harness import ROOT, run_petves, run_tool
 from petves.curves import trigonometric
 from refusals import refused
 from restarts import at_step, frames
+
+import petves
+from petves.views.window import Window
 
 TURNING = ["-flow_u", " -y*cos(t + 1)", "-flow_v", "x*cos(t + 1)"]  # a circle, by the angle sin(t + 1) - sin(1)
 SHEAR = f"-options_file {ROOT / 'runs' / 'shear.opts'} -domain_cells 64,32 -time_step 0.15"
@@ -32,9 +32,8 @@ def test_a_path_at_second_order(bc, tmp_path):
     for dt in ("0.08", "0.04"):
         scene = f"-domain_cells 16,16 -domain_bc_x {bc} -domain_bc_y {bc} -vesicle_shape none"
         scene += f" -time_end 2 -time_step {dt}"
-        files = ["-tracer_file", str(tmp_path / "points.txt"), "-tracer_grid", "2,1", "-output_dir", str(tmp_path / dt)]
-        done = mpirun([PETVES, *scene.split(), *TURNING, *files], 1)
-        assert done.returncode == 0, done.stderr
+        files = ["-tracer_file", tmp_path / "points.txt", "-tracer_grid", "2,1"]
+        run_petves(tmp_path / dt, [*scene.split(), *TURNING, *files])
         x, y = points(tmp_path / dt)[-1].T
         errors.append(np.abs(x + 1j * y - start * np.exp(1j * (np.sin(3) - np.sin(1)))).max())
     assert errors[1] < 1e-3 and 3.3 < errors[0] / errors[1] < 4.7, errors
@@ -95,10 +94,6 @@ def test_what_is_refused(tmp_path):
 def test_what_the_tools_read(tmp_path):
     """In a periodic box places go on outside of it; xarray has them, and pictures show them in the box."""
     run = run_petves(tmp_path / "run", f"{SHEAR} -tracer_grid 3,2 -time_end 6")
-    sys.path.insert(0, str(ROOT / "python"))
-    import petves
-    from petves.views.window import Window
-
     data, read = petves.load(run.folder), petves.load(run.folder, "numpy")
     assert data["tracers"].dims == ("time", "tracer", "xy") and data["tracers"].attrs["units"] == "length"
     assert np.array_equal(data["tracers"], read.tracers) and read.tracers.shape[1:] == (6, 2)
@@ -106,6 +101,4 @@ def test_what_the_tools_read(tmp_path):
     assert np.abs(seen - wrapped).max() < 1e-12 and np.abs(seen - read.tracers[-1]).max() > 1
     assert (seen > read.box[::2]).all() and (seen < read.box[1::2]).all()
     assert 'Polyvertex" NumberOfElements="6"' in (run.folder / "run.xmf").read_text()
-    words = ["-m", "petves", "plot", str(run.folder), "--field", "speed"]
-    done = subprocess.run(["/usr/bin/python3", *words], capture_output=True, text=True, cwd=ROOT / "python")
-    assert done.returncode == 0, done.stderr
+    assert run_tool("plot", run.folder, "--field", "speed").returncode == 0

@@ -1,11 +1,10 @@
 """Warnings of what markers and steps do not resolve: each names its quantity and what to do, once, and what it says is enough."""
 
-import json
 import re
 
 import numpy as np
 import pytest
-from harness import ROOT, Run, mpirun, PETVES
+from harness import ROOT, read_series, run_petves
 
 FREE = "-domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none"
 QUIET = "-output_every 1000 -checkpoint_every 0"
@@ -13,10 +12,9 @@ QUIET = "-output_every 1000 -checkpoint_every 0"
 
 def warnings(folder, options: str, ranks: int = 1) -> list[str]:
     """Warnings of a run with the program's own defaults, as printed and as summary.json lists them."""
-    done = mpirun([PETVES, "-output_dir", str(folder), *options.split(), *QUIET.split()], ranks)
-    assert done.returncode == 0, done.stderr
-    listed = json.loads((folder / "summary.json").read_text())["warnings"]
-    assert re.findall(r"petves: warning: (.*)", done.stdout) == listed
+    run = run_petves(folder, f"{options} {QUIET}", ranks)
+    listed = run.summary["warnings"]
+    assert re.findall(r"petves: warning: (.*)", run.stdout) == listed
     return listed
 
 
@@ -81,7 +79,7 @@ def test_wrinkles_that_markers_do_not_resolve(tmp_path):
     for given in ("", "-vesicle_allow_close_markers -vesicle_markers 91"):
         folder = tmp_path / f"fine{given[-2:]}"
         assert not warnings(folder, f"{FREE} {options} {given} -time_end 1.5")
-        energies.append(Run(folder, 0, "", []).series["energy_bending"][-1])
+        energies.append(read_series(folder / "series.csv")["energy_bending"][-1])
     assert energies[0] == pytest.approx(energies[1], rel=1e-3)
 
 
@@ -96,6 +94,6 @@ def test_shipped_scenes_do_not_warn(name, tmp_path):
 def test_many_markers_say_what_they_cost(tmp_path):
     options = "-domain_box -4,4,-4,4 -domain_cells 32,32 -fluid_inertia unsteady"  # not solved at time 0
     options += " -vesicle_semi_axes 0.5,0.9 -vesicle_allow_close_markers -time_end 0 -vesicle_markers"
-    said = [mpirun([PETVES, "-output_dir", str(tmp_path / n), *options.split(), n], 1).stdout for n in ("601", "2001")]
+    said = [run_petves(tmp_path / n, f"{options} {n}").stdout for n in ("601", "2001")]
     assert "warning" not in said[0]
     assert "petves: warning: 2001 markers on a vesicle: its dense block in the solve takes about 3e+01 s" in said[1]

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 import pytest
 from drawn_scenes import OF_FREE, OF_SOLIDS, OF_VESICLES, Draw, Scene
-from harness import PETVES, mpirun, read_series
+from harness import read_series, run_petves
 
 SEED, SCENES = int(os.environ.get("FUZZ_SEED", 2025)), int(os.environ.get("FUZZ_SCENES", 40))
 FEW = int(os.environ.get("FUZZ_CHANGES", 3))  # changes of a scene
@@ -160,8 +160,8 @@ def changes(scene: Scene, draw: random.Random) -> list[Change]:
 def run(scene: Scene, folder: Path, ranks: int = 1):
     folder.mkdir(parents=True)
     words = scene.words(folder)
-    done = mpirun([PETVES, *words, "-output_dir", str(folder / "out")], ranks)
-    return done.returncode, done.stderr, words
+    done = run_petves(folder / "out", words, ranks, good=False)
+    return done.status, done.errors, words
 
 
 def read(scene: Scene, change: Change, folder: Path) -> dict:

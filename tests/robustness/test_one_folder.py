@@ -24,8 +24,7 @@ SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_s
 
 def start(folder: Path, options: str, ranks: int = 1, **how) -> subprocess.Popen:
     """A run in the background that has no end unless the options say one."""
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
-    return harness.start(folder, f"{SCENE} -time_end 1000 {options}", ranks, **quiet, **how)
+    return harness.start(folder, f"{SCENE} -time_end 1000 {options}", ranks, **harness.QUIET, **how)
 
 
 def ends_with_line(process: subprocess.Popen, *needles: str) -> None:

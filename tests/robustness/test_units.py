@@ -7,7 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from harness import PETVES, mpirun, read_series
+from harness import PETVES, run_petves
 from test_metamorphic import OPTIONS
 
 from petves.dataset import unit
@@ -76,9 +76,7 @@ def run(options: str, folder, units: dict, length: float = 1, time: float = 1) -
             factor = length ** units[word][0] * time ** units[word][1]
             words[k + 1] = ",".join(repr(float(x) * factor) for x in words[k + 1].split(","))
     tight = [] if "split" in options or "penalty" in options else ["-coupled_ksp_rtol", "1e-10"]
-    done = mpirun([PETVES, *words, *tight, "-output_dir", str(folder)], 1)
-    assert done.returncode == 0, done.stderr
-    series = read_series(folder / "series.csv")
+    series = run_petves(folder, [*words, *tight]).series
     scale = {name: length ** powers(unit(name))[0] * time ** powers(unit(name))[1] for name in series}
     return {name: column / scale[name] for name, column in series.items() if name != "wall"}
 

@@ -17,9 +17,7 @@ END = f"-time_end {0.02 * STEPS} -checkpoint_every 10"
 
 
 def start(folder: Path, options: str) -> subprocess.Popen:
-    """petves in the background."""
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
-    return harness.start(folder, f"{SCENE} {END} {options}", **quiet)
+    return harness.start(folder, f"{SCENE} {END} {options}", **harness.QUIET)
 
 
 def whole(folder: Path) -> None:
