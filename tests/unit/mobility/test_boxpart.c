@@ -39,11 +39,8 @@ static void SetVectors(World *w) {
 
 static void WorldCreate(const char options[], PetscInt cells, PetscBool box, World *w) {
   TestWorld *world = &w->world;
-  char all[1024];
-  TestCall(PetscSNPrintf(all, sizeof(all), "-domain_cells %d,%d %s", (int)cells, (int)cells, options));
-  TestCall(PetscOptionsClear(NULL));
-  TestCall(PetscOptionsInsertString(NULL, all));
-  TestCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &world->scene));
+  TestScene(&world->scene, EXACT "-delta_type cbs54 -fluid_inertia none -vesicle_markers 45 -domain_cells %d,%d %s",
+            (int)cells, (int)cells, options);
   const CouplingSetting setting = {
       .mobility = {
           .kernel = world->scene->coupling.kernel, .near = NEAR_EXACT, .spec = &world->scene->fluid, .box_part = box}};
@@ -140,22 +137,12 @@ static void CheckOwnImages(const char name[], const char options[]) {
   CHECK(apart < 2e-3, "%s: velocities with and without D differ by %.1e", name, apart);
 }
 
-#define ONE                                                                                                            \
-  "-domain_box 0,5,0,5 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_center 2.6,2.3 -vesicle_angle 20 "      \
-  "-vesicle_markers 45 -vesicle_allow_close_markers true "
-#define TWO                                                                                                            \
-  "-domain_box 0,4,0,4 -fluid_inertia none -vesicle_count 2 -vesicle_semi_axes 0.4,0.6 -vesicle_center 1.2,1.8,3.1,2 " \
-  "-vesicle_markers 45 -vesicle_allow_close_markers true "
-#define OWN                                                                                                            \
-  "-domain_box 0,2,0,2 -fluid_inertia none -vesicle_semi_axes 0.988,0.4 -vesicle_center 1,0.9 -vesicle_markers 45 "    \
-  "-vesicle_allow_close_markers true "
-#define WALL                                                                                                           \
-  "-domain_box 0,5,0,5 -fluid_inertia none -vesicle_semi_axes 1.6,1 -vesicle_center 2.6,1.08 -vesicle_markers 45 "     \
-  "-vesicle_allow_close_markers true "
+#define ONE "-domain_box 0,5,0,5 -vesicle_semi_axes 0.4,0.6 -vesicle_center 2.6,2.3 -vesicle_angle 20 "
+#define TWO "-domain_box 0,4,0,4 -vesicle_count 2 -vesicle_semi_axes 0.4,0.6 -vesicle_center 1.2,1.8,3.1,2 "
+#define OWN "-domain_box 0,2,0,2 -vesicle_semi_axes 0.988,0.4 -vesicle_center 1,0.9 "
+#define WALL "-domain_box 0,5,0,5 -vesicle_semi_axes 1.6,1 -vesicle_center 2.6,1.08 "
 #define UNLIKE "-domain_box 0,5,0,5.079365079365079 "
-#define SEAM                                                                                                           \
-  "-domain_box 0,8,0,8 -fluid_inertia none -vesicle_semi_axes 0.4,0.6 -vesicle_center 7.7654321,4.3 "                  \
-  "-vesicle_markers 35 -vesicle_allow_close_markers true "
+#define SEAM "-domain_box 0,8,0,8 -vesicle_semi_axes 0.4,0.6 -vesicle_center 7.7654321,4.3 -vesicle_markers 35 "
 #define CHANNEL "-domain_bc_x periodic "
 
 /* Largest D F - SUM phi Q diag(l) Q^T psi^T F of sources all unlike, D F by BoxPartApply, over the largest. */
@@ -209,12 +196,8 @@ static void CheckDefault(void) {
               {"-domain_cells 255,300 -domain_box 0,25.5,0,30 -coupling_box_part false", PETSC_FALSE}};
   PetscInt wrong = 0;
   for (int k = 0; k < 4; k++) {
-    char options[512];
     Scene scene;
-    TestCall(PetscSNPrintf(options, sizeof(options), "-vesicle_center 9,9 %s", rows[k].options));
-    TestCall(PetscOptionsClear(NULL));
-    TestCall(PetscOptionsInsertString(NULL, options));
-    TestCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, &scene));
+    TestScene(&scene, EXACT "-delta_type cbs54 -fluid_inertia auto -vesicle_center 9,9 %s", rows[k].options);
     wrong += SceneHasBoxPart(scene) != rows[k].has;
     TestCall(SceneDestroy(&scene));
   }
