@@ -9,7 +9,8 @@ import xml.etree.ElementTree as ET
 import h5py
 import numpy as np
 import pytest
-from harness import attribute, read_series, run_petves, start, wait_for_rows
+from harness import attribute, run_petves, start, wait_for_rows
+from restarts import agree, same_columns
 
 import petves
 from petves.run import Run as Files
@@ -203,45 +204,24 @@ SEVEN = (
 )
 
 
-@pytest.fixture(scope="module")
-def straight(tmp_path_factory):
-    return run_petves(tmp_path_factory.mktemp("seven") / "run", f"{SEVEN} -time_end 0.2").folder
-
-
-def columns(folder):
-    return {name: np.array(column) for name, column in read_series(folder / "series.csv").items() if name != "wall"}
-
-
-def test_iterations_of_seven(straight):
-    """Few: the coarse grid knows what vesicles and walls do to one another. Blocks of each vesicle alone take 8.3 here."""
-    its = columns(straight)["coupled_its"]
-    assert its[2:].mean() <= 7
-
-
 def test_viscosity_contrast_of_seven(tmp_path):
     """Mixed ratios: vesicles know one another's double layer. Without it steps 2 to 4 take 8, 9 and 8 iterations."""
     ratios = "-time_end 0.2 -vesicle_viscosity_ratio .2,10,.2,10,.2,10,.2"
-    one, three = (columns(run_petves(tmp_path / str(n), f"{SEVEN} {ratios}", ranks=n).folder) for n in (1, 3))
+    one, three = (run_petves(tmp_path / str(n), f"{SEVEN} {ratios}", ranks=n).series for n in (1, 3))
     assert one["coupled_its"][2:].mean() <= 7.5
     np.testing.assert_array_equal(three["coupled_its"], one["coupled_its"])
     np.testing.assert_allclose(three["inclination"], one["inclination"], rtol=1e-10, atol=1e-11)
 
 
-@pytest.mark.parametrize("ranks", [3, 5])
-def test_ranks_of_seven(straight, tmp_path, ranks):
-    """The same to rounding. The 16 rows of the coarse grid are shared by 3 ranks; of 5 each has all of them."""
-    here = columns(straight)
-    there = columns(run_petves(tmp_path / "run", f"{SEVEN} -time_end 0.2", ranks=ranks).folder)
-    for name in ("center_x", "center_y", "inclination", "energy_bending"):
-        np.testing.assert_allclose(there[name], here[name], rtol=1e-10, atol=1e-11)
-    np.testing.assert_array_equal(there["coupled_its"], here["coupled_its"])
-
-
-def test_restart_of_seven(straight, tmp_path):
-    """The patterns are found again: the same bits."""
-    folder = tmp_path / "run"
-    run_petves(folder, f"{SEVEN} -time_end 0.1")
-    run_petves(folder, f"{SEVEN} -time_end 0.2 -restart {folder}/checkpoint.h5")
-    here, there = columns(straight), columns(folder)
-    for name in here:
-        np.testing.assert_array_equal(there[name], here[name], err_msg=name)
+def test_iterations_ranks_and_restart_of_seven(tmp_path):
+    """Few iterations: the coarse grid knows what vesicles and walls do to one another. Blocks of each vesicle alone take 8.3 here.
+    Its 16 rows are shared by 3 ranks; of 5 each has all of them. A restart finds the patterns again: the same bits."""
+    names = ("center_x", "center_y", "inclination", "energy_bending")
+    found = {
+        name: run.series for name, run in agree(tmp_path, SEVEN, 0.1, 0.2, names, (3, 5), rel=1e-10, abs=1e-11).items()
+    }
+    whole, rest = found["whole"], found["rest"]
+    assert whole["coupled_its"][2:].mean() <= 7
+    for ranks in (3, 5):
+        np.testing.assert_array_equal(found[ranks]["coupled_its"], whole["coupled_its"])
+    same_columns(rest, {name: column[-len(rest["step"]) :] for name, column in whole.items()})
