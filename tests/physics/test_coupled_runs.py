@@ -1,11 +1,9 @@
 """Scheme coupled as runs: on any number of ranks, for any number of vesicles; what is wrong with options or a step is said."""
 
-import re
-
 import numpy as np
 import pytest
-from harness import PAPER, run_petves
-from refusals import SMALL, leaves_files, stops_with
+from harness import run_petves
+from refusals import SMALL
 from restarts import last_state, same_columns, same_state
 
 pytestmark = pytest.mark.xdist_group("coupled_runs")  # its tests share runs
@@ -68,32 +66,6 @@ def test_far_vesicles_do_as_one(tmp_path):
     a, b = last_state(one.folder)["vesicle/markers"][0], last_state(two.folder)["vesicle/markers"][0]
     np.testing.assert_allclose(b[: len(a)], a, rtol=0, atol=1e-6)
     np.testing.assert_allclose(b[len(a) :] - [6, 0], a, rtol=0, atol=1e-6)
-
-
-def test_number_of_curves_is_checked(tmp_path):
-    t = 2 * np.pi * np.arange(40) / 40
-    curve = [f"{0.3 * np.cos(a):.15g} {0.3 * np.sin(a):.15g}" for a in t]
-    (tmp_path / "c.txt").write_text("\n".join(curve + ["", ""] + curve) + "\n")
-    file = f"{PAPER} {SMALL} -vesicle_shape file -vesicle_file {tmp_path}/c.txt"
-    cases = {
-        "-vesicle_count 3 -vesicle_center -.4,0,.4,0": ["-vesicle_count 3", "2", "same number"],
-        "-vesicle_center 0,0,1,0,2,0": ["-vesicle_center", "6 numbers", "2"],
-        "-vesicle_center -.4,0,.4,0 -vesicle_angle 1,2,3": ["-vesicle_angle", "3 numbers"],
-        "": ["overlap"],
-    }
-    for i, (options, needles) in enumerate(cases.items()):
-        stops_with(run_petves(tmp_path / f"out{i}", f"{file} {options}", 1, good=False), needles)
-
-
-@pytest.mark.parametrize("start", ["euler", "graded"])
-def test_failed_solve_stops_the_run(start, tmp_path):
-    """Prefix, step, time and residual in the message; the state left is the one before the step."""
-    options = f"{SMALL} -coupled_ksp_max_it 1 -coupled_ksp_rtol 1e-12 -scheme_startup {start}"
-    run = run_petves(tmp_path / "out", options, ranks=2, good=False)
-    reason = r"prefix coupled_ failed in step \d+ at time [\d.e-]+: DIVERGED_ITS after 1 iterations, residual [\d.]+"
-    summary, series = leaves_files(run, reason)
-    assert int(re.search(r"in step (\d+)", summary["reason"])[1]) == series["step"][-1] + 1
-    assert float(re.search(r"at time ([\d.e-]+):", summary["reason"])[1]) > series["time"][-1]
 
 
 def test_options_of_the_solver_work(tmp_path):

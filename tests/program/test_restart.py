@@ -147,15 +147,6 @@ def test_another_format_is_refused(straight, tmp_path):
         seal(path)
 
 
-def test_missing_entries_are_refused(straight, tmp_path):
-    path = tmp_path / "checkpoint.h5"
-    shutil.copy(straight("split").folder / "checkpoint.h5", path)
-    with h5py.File(path, "r+") as file:
-        del file["fluid/u"]
-    seal(path)
-    refused(tmp_path / "new", f"{SCHEMES['split']} -restart {path}", "entries are missing")
-
-
 def test_damaged_checkpoints_are_refused(straight, tmp_path):
     """Cut off at any length, or with any one bit flipped: one line, on every rank, and no file of the run is touched."""
     data = (straight("split").folder / "checkpoint.h5").read_bytes()

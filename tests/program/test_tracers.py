@@ -72,20 +72,8 @@ def test_restart_and_ranks(tmp_path):
         assert np.abs(points(other.folder) - points(whole.folder)).max() < 1e-9
 
 
-def test_what_is_refused(tmp_path):
-    (tmp_path / "points.txt").write_text("0 0\n3 0\n")
-    (tmp_path / "none.txt").write_text("# nothing\n")
+def test_a_restart_with_other_tracers_is_refused(tmp_path):
     small = "-domain_cells 32,32 -time_step 0.01 -time_end 0.02"
-    numbers = "-tracer_grid: needs two numbers above 0; allowed: NX,NY of up to 1000000 points, or 0,0 for none"
-    for words, needle in (
-        (f"file {tmp_path}/points.txt", "point 2 (3. 0.) is outside of the box; allowed: points in -domain_box"),
-        (f"file {tmp_path}/none.txt", "0 points; allowed: at least one"),
-        ("file none", "-tracer_file none: cannot be opened"),
-        ("grid 3", numbers),
-        ("grid 70000,70000", "-tracer_grid: needs"),
-        ("grid 3,0", numbers),
-    ):
-        refused(tmp_path / "run", f"{small} -tracer_{words}", needle)
     run_petves(tmp_path / "run", f"{small} -tracer_grid 2,2")
     restart = f"-restart {tmp_path / 'run' / 'checkpoint.h5'} -time_end 0.03"
     refused(tmp_path / "run", f"{small} {restart} -tracer_grid 2,3", "-tracer_grid 2,3")

@@ -115,6 +115,7 @@ FORGED = {
     "more entries": (replaced("fluid/u", lambda v: np.concatenate([v, v])), "size or storage"),
     "fewer markers": (replaced("vesicle/markers", lambda v: v[:, 1:]), "size or storage"),
     "compressed": (replaced("fluid/u", lambda v: v, compression="gzip"), "size or storage"),
+    "no velocity": (lambda file, place: file.__delitem__("fluid/u"), "entries are missing"),
     "a group": (dataset("fluid/u", lambda f, n, v, _: f.create_group(n)), "size or storage"),
 }
 
