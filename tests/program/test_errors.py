@@ -235,13 +235,11 @@ def test_file_that_cannot_be_written_is_named(name, tmp_path):
     assert name in run.errors[0] and "cannot be written" in run.errors[0] and "allowed" in run.errors[0]
 
 
-def test_close_markers_go_on_when_allowed(tmp_path):
-    run = run_petves(tmp_path / "out", f"{SMALL} -vesicle_spacing 1.2 -vesicle_allow_close_markers -time_end 0.01")
-    assert len(run.series["step"]) == 2
-
-
-def test_unused_options_go_on_when_allowed(tmp_path):
-    run_petves(tmp_path / "out", f"{SMALL} -vesicle_bendin 1 -allow_unused_options -time_end 0.01")
+@pytest.mark.parametrize(
+    "options", ["-vesicle_spacing 1.2 -vesicle_allow_close_markers", "-bendin 1 -allow_unused_options"]
+)
+def test_what_is_allowed_goes_on(options, tmp_path):
+    assert len(run_petves(tmp_path / "out", f"{SMALL} {options} -time_end 0.01").series["step"]) == 2
 
 
 FAILING = [("tension_", PAPER), ("bending_", PAPER)]

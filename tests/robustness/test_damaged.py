@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import ENVIRONMENT, PETVES, read_series, run_petves, wait_for
-from test_forged import external_link, external_storage, soft_link, virtual
+from test_forged import attribute, dataset, external_link, external_storage, soft_link, virtual
 
 import petves
 from petves.errors import Error, RunError
@@ -79,33 +79,18 @@ def test_run_that_goes_on_and_is_killed(tmp_path):
     assert len(last.series["step"]) > 20 * (len(last.time) - 1)
 
 
-def attribute(name: str, value: object):
-    def change(folder: Path) -> None:
+def fields(change):
+    """A change of run.h5, as test_forged.py makes them of checkpoints."""
+
+    def changed(folder: Path) -> None:
         with h5py.File(folder / "run.h5", "r+") as file:
-            file.attrs[name] = value
+            change(file, folder)
 
-    return change
-
-
-def dataset(name: str, value: object):
-    def change(folder: Path) -> None:
-        with h5py.File(folder / "run.h5", "r+") as file:
-            del file[name]
-            file[name] = value
-
-    return change
+    return changed
 
 
-def elsewhere(make):
-    """Take the values of fluid/u from another place than the file."""
-
-    def change(folder: Path) -> None:
-        with h5py.File(folder / "run.h5", "r+") as file:
-            values = file["fluid/u"][:]
-            del file["fluid/u"]
-            make(file, "fluid/u", values, folder)
-
-    return change
+def put(name: str, value: object):
+    return fields(lambda file, _: (file.__delitem__(name), file.__setitem__(name, value)))
 
 
 def text(name: str, content: bytes):
@@ -121,20 +106,20 @@ DAMAGES = {
     "series.csv in another coding": text("series.csv", b"\xff\xfe\n1,2\n"),
     "run.h5 empty": text("run.h5", b""),
     "run.h5 cut": lambda folder: os.truncate(folder / "run.h5", 20000),
-    "run.h5 without a frame": dataset("time", np.zeros(0)),
-    "run.h5 with times of words": dataset("time", [b"a", b"b"]),
-    "run.h5 with times that fall": dataset("time", [0.0, 2.0, 1.0]),
-    "run.h5 with a scalar": dataset("vesicle/markers", 1.0),
-    "run.h5 with fields as a number": dataset("fluid", 1.0),
-    "run.h5 with nan markers": lambda folder: dataset("vesicle/markers", np.nan * Run(folder).markers)(folder),
-    "run.h5 with other cells": attribute("h", 0.3),
-    "run.h5 without a size": attribute("h", 0.0),
-    "run.h5 with a short box": attribute("box", [0.0, 1.0]),
-    "run.h5 with other vesicles": attribute("vesicle_start", [0, 10**9]),
-    "run.h5 with a link out": elsewhere(external_link),
-    "run.h5 with a link in": elsewhere(soft_link),
-    "run.h5 with storage outside": elsewhere(external_storage),
-    "run.h5 with virtual values": elsewhere(virtual),
+    "run.h5 without a frame": put("time", np.zeros(0)),
+    "run.h5 with times of words": put("time", [b"a", b"b"]),
+    "run.h5 with times that fall": put("time", [0.0, 2.0, 1.0]),
+    "run.h5 with a scalar": put("vesicle/markers", 1.0),
+    "run.h5 with fields as a number": put("fluid", 1.0),
+    "run.h5 with nan markers": lambda folder: put("vesicle/markers", np.nan * Run(folder).markers)(folder),
+    "run.h5 with other cells": fields(attribute("h", 0.3)),
+    "run.h5 without a size": fields(attribute("h", 0.0)),
+    "run.h5 with a short box": fields(attribute("box", [0.0, 1.0])),
+    "run.h5 with other vesicles": fields(attribute("vesicle_start", [0, 10**9])),
+    "run.h5 with a link out": fields(dataset("fluid/u", external_link)),
+    "run.h5 with a link in": fields(dataset("fluid/u", soft_link)),
+    "run.h5 with storage outside": fields(dataset("fluid/u", external_storage)),
+    "run.h5 with virtual values": fields(dataset("fluid/u", virtual)),
 }
 
 
