@@ -13,9 +13,8 @@ ALONE = "-vesicle_shape none -obstacle_free all -obstacle_shape posts"
 FREE = f"{ALONE} -domain_bc_x free -domain_bc_y free -domain_box -4,4,-4,4 -domain_cells 64,64"
 ONCE = "-coupled_ksp_rtol 1e-11 -time_step 1e-5 -time_end 1e-5"
 #: Two discs between walls, one of them pulled.
-PAIR = (
-    "-domain_box -2,2,-2,2 -domain_cells 48,48 -obstacle_radius .5,.4 -obstacle_center -.6,.3,.6,-.2 -flow_type shear"
-)
+PAIR = "-domain_box -2,2,-2,2 -domain_cells 48,48 -obstacle_radius .5,.4 -obstacle_center -.6,.3,.6,-.2"
+PAIR += " -flow_type shear"
 PULL = "-obstacle_force 1,-2,0,0 -obstacle_torque 0,.5"
 RATES = ("velocity_x", "velocity_y", "rotation")
 
@@ -68,14 +67,11 @@ def test_two_discs_against_boundary_integrals(name, options, tmp_path):
 @pytest.mark.parametrize("order, within", [(2, 5e-6), (3, 2e-6)])
 def test_jeffery_s_orbit(order, within, tmp_path):
     """An ellipse 2:1 turns once in 5 pi, in 200 steps; twice the steps take the order's part of the error away."""
-    options = (
-        f"{FREE} {ellipses(tmp_path, (0, 0, 2, 1))} -flow_type shear -scheme_order {order} -time_end {5 * np.pi!r}"
-    )
+    options = f"{FREE} {ellipses(tmp_path, (0, 0, 2, 1))} -flow_type shear -scheme_order {order} -output_every 99"
+    options += f" -coupled_ksp_rtol 1e-9 -time_end {5 * np.pi!r} -time_step"
     off = []
     for steps in (200, 400):
-        series = run_petves(
-            tmp_path / str(steps), f"{options} -time_step {5 * np.pi / steps!r} -output_every 99 -coupled_ksp_rtol 1e-9"
-        ).series
+        series = run_petves(tmp_path / str(steps), f"{options} {5 * np.pi / steps!r}").series
         slowest = 0.2  # the rate at which it turns where the turn ends
         off.append(abs(series["obstacle_angle_1"][-1] + 2 * np.pi) / slowest / (5 * np.pi))
         balanced(series, 1)
@@ -96,9 +92,8 @@ def test_bodies_that_meet_take_smaller_steps(tmp_path):
     options += " -obstacle_center -1.5,0,1.5,0 -obstacle_force 20,0,-20,0 -time_step .5 -time_adapt error -time_end 10"
     run = run_petves(tmp_path, f"{ALONE} {options}", good=False)
     assert run.status == 2 and "obstacles 1 and 2 run into one another" in run.errors[-1]
-    assert (
-        run.series["dt"][-1] < 1e-9 and abs(run.series["obstacle_center_x_1"][-1]) > 1.018
-    )  # by less than 0.037 apart their forces are not right
+    # by less than 0.037 apart their forces are not right
+    assert run.series["dt"][-1] < 1e-9 and abs(run.series["obstacle_center_x_1"][-1]) > 1.018
 
 
 def test_discs_that_pass(tmp_path):
@@ -136,17 +131,13 @@ def test_a_disc_settles_in_a_channel(tmp_path):
 def test_a_body_whose_motion_is_given(ranks, box, tmp_path):
     """Surfaces that move with the velocities of free bodies feel the same forces, marker by marker."""
     sides = {"wall": "", "channel": "-domain_bc_x periodic", "periodic": f"{PERIODIC} -flow_type uniform"}[box]
-    options = (
-        f"{PAIR.replace('-flow_type shear', '') if box == 'periodic' else PAIR} {sides} {ONCE} -vesicle_shape none"
-    )
-    options += " -obstacle_shape posts"
+    options = f"{PAIR} {sides} {ONCE} -vesicle_shape none -obstacle_shape posts"
     free = run_petves(tmp_path / "free", f"{options} -obstacle_free all {PULL}", ranks=ranks)
     balanced(free.series, 2, [(1, -2, 0), (0, 0, 0.5)])
     q = [rates(free.series, body, 0) for body in (1, 2)]
     velocity = ",".join(repr(x) for body in q for x in body[:2])
-    given = run_petves(
-        tmp_path / "given", f"{options} -obstacle_velocity {velocity} -obstacle_rotation {q[0][2]!r},{q[1][2]!r}"
-    )
+    options += f" -obstacle_velocity {velocity} -obstacle_rotation {q[0][2]!r},{q[1][2]!r}"
+    given = run_petves(tmp_path / "given", options)
     with h5py.File(free.folder / "run.h5") as one, h5py.File(given.folder / "run.h5") as two:
         assert np.abs(one["obstacle/force"][0] - two["obstacle/force"][0]).max() < 1e-8
 
@@ -168,10 +159,8 @@ def test_an_inclusion(case, tmp_path):
 def test_an_inclusion_within_the_wanted_error(tmp_path):
     """-scheme_auto 0.001 with a disc in a vesicle."""
     exact = EXACT["inclusion"]["0.3, 1"]
-    options = (
-        "-scheme_auto .001 -domain_bc_x free -domain_bc_y free -flow_type shear -time_end 30 -vesicle_reduced_area .8"
-    )
-    options += f" -vesicle_area 2.513274122871834 -vesicle_angle {180 * exact[0]} -vesicle_bending .1"
+    options = "-scheme_auto .001 -domain_bc_x free -domain_bc_y free -flow_type shear -time_end 30 -vesicle_bending .1"
+    options += f" -vesicle_reduced_area .8 -vesicle_area 2.513274122871834 -vesicle_angle {180 * exact[0]}"
     series = run_petves(tmp_path, f"{options} -obstacle_shape posts -obstacle_free all -obstacle_radius .3").series
     found = [series["inclination"][-1] / np.pi, series["frequency"][-1], rates(series, 1)[2]]
     assert found == pytest.approx(exact, rel=1e-3)
@@ -212,11 +201,9 @@ def test_a_packing_of_discs_and_vesicles(tmp_path):
 def test_contact_with_a_vesicle_is_equal_and_opposite(tmp_path):
     """A disc that is pulled into a vesicle: what it bears less than its load, the vesicle bears; the same on 3 ranks."""
     options = f"{PERIODIC} -domain_box -1,1,-1,1 -domain_cells 48,48 -vesicle_center .2,.05 -vesicle_area .2"
-    options += (
-        " -vesicle_reduced_area .9 -vesicle_angle 90 -obstacle_shape posts -obstacle_free all -obstacle_radius .2"
-    )
-    options += " -obstacle_center -.27,0 -obstacle_force 6,0 -contact_repulsion 100 -contact_repulsion_range .1"
-    options += " -time_step .02 -output_overwrite"
+    options += " -vesicle_reduced_area .9 -vesicle_angle 90 -obstacle_shape posts -obstacle_free all"
+    options += " -obstacle_radius .2 -obstacle_center -.27,0 -obstacle_force 6,0 -contact_repulsion 100"
+    options += " -contact_repulsion_range .1 -time_step .02 -output_overwrite"
     names = ("gap", "center_x", "coupled_its", "obstacle_rotation_1", "obstacle_force_x_1", "pressure_drop")
     series = agree(tmp_path, options, 0.2, 0.4, names, (3,), rel=1e-8)["whole"].series
     borne = series["obstacle_force_x_1"] + 6
@@ -271,7 +258,8 @@ def test_stress_of_a_contact_over_the_seam(tmp_path):
 def test_a_disc_falls_beside_a_vesicle(tmp_path):
     """runs/falling.opts shows what its header says."""
     row = run_petves(tmp_path, f"-options_file {ROOT / 'runs' / 'falling.opts'} -output_dir {tmp_path}").series
-    names = [f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")] + [
+    names = [
+        *(f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")),
         "center_x",
         "center_y",
         "inclination",

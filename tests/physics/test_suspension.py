@@ -217,9 +217,8 @@ def test_iterations_ranks_and_restart_of_seven(tmp_path):
     """Few iterations: the coarse grid knows what vesicles and walls do to one another. Blocks of each vesicle alone take 8.3 here.
     Its 16 rows are shared by 3 ranks; of 5 each has all of them. A restart finds the patterns again: the same bits."""
     names = ("center_x", "center_y", "inclination", "energy_bending")
-    found = {
-        name: run.series for name, run in agree(tmp_path, SEVEN, 0.1, 0.2, names, (3, 5), rel=1e-10, abs=1e-11).items()
-    }
+    runs = agree(tmp_path, SEVEN, 0.1, 0.2, names, (3, 5), rel=1e-10, abs=1e-11)
+    found = {name: run.series for name, run in runs.items()}
     whole, rest = found["whole"], found["rest"]
     assert whole["coupled_its"][2:].mean() <= 7
     for ranks in (3, 5):

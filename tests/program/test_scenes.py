@@ -13,10 +13,8 @@ from studies.reproduction.convergence import differences
 from studies.reproduction.scene_figures import keller_skalak
 
 SCENES = ("energy", "relax", "shear_convergence", "equilibrium", "poiseuille", "shear")
-RANKS = {f"{name}.opts": 1 for name in (*SCENES, "free")}
-RANKS |= {
-    f"{name}.opts": 2 for name in ("default", "two_vesicles", "suspension", *(f"paper/{name}" for name in SCENES))
-}
+TWO = ("default", "two_vesicles", "suspension", *(f"paper/{name}" for name in SCENES))
+RANKS = {f"{name}.opts": 1 for name in (*SCENES, "free")} | {f"{name}.opts": 2 for name in TWO}
 
 
 def run_file(name, folder, options="", ranks=1):

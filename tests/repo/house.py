@@ -28,10 +28,8 @@ def tags(tree: Path, folders: Iterable[str] = (".",)) -> Tags:
     """What ctags finds in the C files of some folders of a tree; a struct without a tag has the name of its typedef or variable."""
     words = "ctags -R --langmap=C:.c.h --languages=C --output-format=json --fields=+neSt --kinds-C=fpsumvt -f -".split()
     text = subprocess.run([*words, *folders], cwd=tree, capture_output=True, text=True, check=True).stdout
-    names = {
-        tag["typeref"].split(":")[-1]: tag["name"] for tag in map(json.loads, text.splitlines()) if "typeref" in tag
-    }
-    names = {part: name for words, name in names.items() for part in re.findall(r"__anon\w+", words)}
+    typed = [(tag["name"], tag["typeref"]) for tag in map(json.loads, text.splitlines()) if "typeref" in tag]
+    names = {part: name for name, kind in typed for part in re.findall(r"__anon\w+$|__anon\w+(?=\W*$)", kind)}
     found: Tags = defaultdict(list)
     for line in text.splitlines():
         tag = json.loads(re.sub(r"__anon\w+", lambda match: names.get(match[0], match[0]), line))
@@ -79,11 +77,11 @@ def rooms(source: Path, found: Tags) -> dict[str, str]:
         declared[tag["name"]] += [stem(tag["path"])] if tag["path"].endswith(".h") else []
     for tag in found["function"]:
         homes[stem(tag["path"])] += declared[tag["name"]]
-    names = {stem(str(path.relative_to(source))) for path in source.rglob("*.[ch]")}
-    alone = {name for name in names if not (source / f"{name}.h").exists()}
-    return {
-        name: max(sorted(homes[name]), key=homes[name].count, default=name) if name in alone else name for name in names
-    }
+    rooms = {stem(str(path.relative_to(source))): "" for path in source.rglob("*.[ch]")}
+    for name in rooms:
+        likely = [] if (source / f"{name}.h").exists() else sorted(homes[name])
+        rooms[name] = max(likely, key=likely.count, default=name)
+    return rooms
 
 
 def joined(room: dict[str, str], *uses: Uses) -> Uses:
@@ -161,9 +159,8 @@ class Types:
     def __init__(self, found: Tags):
         self.home: dict[str, str] = {}
         self.fields: dict[str, dict[str, str]] = defaultdict(dict)
-        self.alias = {
-            tag["name"]: self.kind(tag) for tag in found["typedef"] if tag.get("typeref", "").startswith("struct:_")
-        }
+        named = [tag for tag in found["typedef"] if tag.get("typeref", "").startswith("struct:_")]
+        self.alias = {tag["name"]: self.kind(tag) for tag in named}
         for tag in found["member"]:
             if tag["path"].endswith(".h"):
                 name = tag["scope"].rpartition(":")[2]

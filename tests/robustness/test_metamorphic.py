@@ -281,9 +281,8 @@ def test_every_kind_is_drawn():
         draw = Draw(2025, number)
         scene = draw.scene()
         if scene:
-            seen.update(
-                [scene.kind, *scene.text, *scene.text.values(), *scene.numbers, *scene.numbers["domain_bc"].tolist()]
-            )
+            seen.update([scene.kind, *scene.text, *scene.text.values()])
+            seen.update([*scene.numbers, *scene.numbers["domain_bc"].tolist()])
             seen.update(change.name for change in changes(scene, draw.random))
     kinds = "posts obstacle_free closed container open spanning coupled split penalty free periodic wall convective unsteady"
     kinds += " shear poiseuille extension uniform flux error vesicle_viscosity_ratio fluid_gravity contact_adhesion"

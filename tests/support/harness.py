@@ -89,9 +89,8 @@ def run_python(script: Path | str, *words: str, ranks: int = 1, good: bool = Tru
 def simulation(options: str, **more) -> str:
     """The call in Python that makes a simulation of these options, a value each."""
     words = options.split()
-    named = dict(zip((name[1:] for name in words[::2]), words[1::2])) | {
-        name: str(value) for name, value in more.items()
-    }
+    named = dict(zip((name[1:] for name in words[::2]), words[1::2]))
+    named |= {name: str(value) for name, value in more.items()}
     return f"petves.Simulation({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
 
