@@ -258,12 +258,8 @@ def test_stress_of_a_contact_over_the_seam(tmp_path):
 def test_a_disc_falls_beside_a_vesicle(tmp_path):
     """runs/falling.opts shows what its header says."""
     row = run_petves(tmp_path, f"-options_file {ROOT / 'runs' / 'falling.opts'} -output_dir {tmp_path}").series
-    names = [
-        *(f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")),
-        "center_x",
-        "center_y",
-        "inclination",
-    ]
+    names = [f"obstacle_{name}_1" for name in ("center_x", "center_y", "angle")]
+    names += ["center_x", "center_y", "inclination"]
     exact = [0.4243, -1.1268, -0.5707, -0.4828, 0.9549, 0.8198]
     assert [row[name][-1] for name in names] == pytest.approx(exact, abs=2e-4)
     assert row["coupled_its"][5:].max() <= 4

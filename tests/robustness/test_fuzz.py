@@ -157,14 +157,8 @@ class Draw:
             if name.startswith("-") and name[1:2].isalpha():
                 lines.append(name if value.startswith("-") else f"{name} {value}")
         extra = ["-options_file a.opts", "-options_file b.opts", "-options_file no.opts", "-options_file /", "# x", ""]
-        extra += [
-            "stray",
-            "-flow_rate = 2",
-            "-domain_cells 16, 16",
-            "-vesicle_angle 1 2",
-            "-output_dir 'a b'",
-            "-x " * 9,
-        ]
+        extra += ["stray", "-flow_rate = 2", "-domain_cells 16, 16", "-vesicle_angle 1 2", "-output_dir 'a b'"]
+        extra += ["-x " * 9]
         for _ in range(self.random.randint(0, 2)):
             lines.insert(self.random.randint(0, len(lines)), self.random.choice(extra))
         text = self.random.choice([b"", b"\xef\xbb\xbf"]) + end.join(lines).encode()
