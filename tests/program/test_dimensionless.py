@@ -8,6 +8,8 @@ import pytest
 from harness import run_petves, run_tool
 from restarts import without_wall
 
+from petves.curves import trigonometric
+
 SMALL = f"-domain_cells 32,32 -domain_box -2,2,-2,2 -time_step 0.1 -time_end 0.1 -output_every 10"
 VIEW = re.compile(r"background flow: \w+, (?:rate|u_max) = (\S+): .* = (\S+) with R0 = (\S+), nu R0\^3/c_b = (\S+)\n")
 
@@ -18,13 +20,8 @@ def markers(run) -> np.ndarray:
 
 def spectral_measures(X: np.ndarray) -> tuple[float, float, complex]:
     """Area, length and centroid of the trigonometric curve through markers."""
-    n = len(X)
-    k = np.fft.fftfreq(n, 1 / n)
-    fine = 8 * n
-    spectrum = np.zeros(fine, complex)
-    spectrum[k.astype(int)] = np.fft.fft(X[:, 0] + 1j * X[:, 1]) * fine / n
-    z = np.fft.ifft(spectrum)
-    dz = np.fft.ifft(spectrum * 2j * np.pi * np.fft.fftfreq(fine, 1 / fine))
+    z = trigonometric(X, 8 * len(X)) @ [1, 1j]
+    dz = np.fft.ifft(np.fft.fft(z) * 2j * np.pi * np.fft.fftfreq(len(z), 1 / len(z)))
     area = np.mean((z.conj() * dz).imag) / 2
     centroid = np.mean(z * (z.conj() * dz).imag) / 3 / area
     return area, np.mean(np.abs(dz)), centroid
