@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import PAPER, attribute, run_petves
+from restarts import same_columns
 
 STRETCHED = f"{PAPER} -domain_cells 32,32 -flow_type extension -flow_rate 10 -time_step 0.01 -time_end 1"
 
@@ -28,8 +29,7 @@ def test_limit_stops_at_the_state_before(limit, column, tmp_path):
     end = f"-limit_{column} {10 * value} -time_end {0.01 * (last + 2)}"
     run_petves(run.folder, f"{STRETCHED} {end} -restart {run.folder}/checkpoint.h5", ranks=2)
     whole = run_petves(tmp_path / "whole", f"{STRETCHED} {end}", ranks=2)
-    for name in set(series) - {"wall"}:
-        np.testing.assert_array_equal(run.series[name], whole.series[name], err_msg=name)
+    same_columns(run.series, whole.series)
     assert np.abs(whole.series[column][last + 1]) > value, "the step that was refused"
 
 
