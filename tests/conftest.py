@@ -1,6 +1,7 @@
 """Fixtures and hooks of the tests: the search path, locks of the workers, and one plain line of counts at the end."""
 
 import fcntl
+import functools
 import os
 import sys
 import tempfile
@@ -12,20 +13,14 @@ ROOT = Path(__file__).resolve().parent.parent
 #: What the tests share, the package, and the studies of docs/.
 sys.path[:0] = [str(ROOT / folder) for folder in ("tests/support", "python", "")]
 
-from harness import Run, run_petves  # noqa: E402
+from harness import run_petves  # noqa: E402
 
 
 @pytest.fixture(scope="session")
 def cached_run(tmp_path_factory):
     """run_petves for runs that several tests look at: each is made once."""
-    runs: dict[tuple[str, int], Run] = {}
-
-    def get(options: str, ranks: int = 1) -> Run:
-        if (options, ranks) not in runs:
-            runs[options, ranks] = run_petves(tmp_path_factory.mktemp("run"), options, ranks)
-        return runs[options, ranks]
-
-    return get
+    made = functools.cache(lambda options, ranks: run_petves(tmp_path_factory.mktemp("run"), options, ranks))
+    return lambda options, ranks=1: made(options, ranks)
 
 
 #: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.

@@ -16,17 +16,10 @@ pytestmark = pytest.mark.xdist_group("restart")  # its tests share runs
 
 
 @pytest.fixture(scope="module")
-def straight(tmp_path_factory):
-    """A run of 2 N steps that keeps all its checkpoints, a scheme; made once."""
-    made = {}
-
-    def get(name: str):
-        if name not in made:
-            options = f"{SCHEMES[name]} -time_end {0.02 * 2 * N} -checkpoint_every {N} -checkpoint_keep 9"
-            made[name] = run_petves(tmp_path_factory.mktemp(name) / "run", options, ranks=2)
-        return made[name]
-
-    return get
+def straight(cached_run):
+    """A run of 2 N steps that keeps all its checkpoints, a scheme."""
+    ends = f"-time_end {0.02 * 2 * N} -checkpoint_every {N} -checkpoint_keep 9"
+    return lambda name: cached_run(f"{SCHEMES[name]} {ends}", 2)
 
 
 @pytest.mark.parametrize("name", SCHEMES)

@@ -4,7 +4,6 @@ import re
 
 import numpy as np
 import pytest
-from harness import run_petves
 
 import petves
 from petves.run import Run
@@ -35,15 +34,8 @@ SCENES = {
 
 
 @pytest.fixture(scope="module")
-def folders(tmp_path_factory):
-    made = {}
-
-    def folder(name):
-        if name not in made:
-            made[name] = run_petves(tmp_path_factory.mktemp("views") / "run", SCENES[name]).folder
-        return made[name]
-
-    return folder
+def folders(cached_run):
+    return lambda name: cached_run(SCENES[name]).folder
 
 
 @pytest.fixture

@@ -138,30 +138,16 @@ def test_broken_tables_after_an_end_that_was_not_the_end(tmp_path):
     same_frames(tmp_path / "run", whole.folder)
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    """A function that mounts a small tmpfs; needs the right to mount."""
-    place = tmp_path / "disk"
-    place.mkdir()
-    mounted = []
-
-    def mount(kib: int) -> Path:
-        words = f"mount -t tmpfs -o size={kib}k tmpfs {place}".split()
-        done = subprocess.run(words, capture_output=True, text=True)
-        if done.returncode:
-            pytest.skip(f"mount is not permitted here: {done.stderr.strip()}")
-        mounted.append(place)
-        return place
-
-    yield mount
-    for path in mounted:
-        subprocess.run(["umount", str(path)], check=True)
-
-
 @pytest.mark.parametrize("kib, ranks", [(8, 1), (56, 1), (60, 1), (120, 2), (240, 1), (600, 2), (800, 1)])
-def test_full_disk(kib, ranks, small_disk, tmp_path):
-    """One line; a checkpoint that is there is good, and no half one has its name."""
-    folder = small_disk(kib) / "run"
+def test_full_disk(kib, ranks, tmp_path, request):
+    """One line; a checkpoint that is there is good, and no half one has its name. Needs the right to mount a disk."""
+    (tmp_path / "disk").mkdir()
+    words = f"mount -t tmpfs -o size={kib}k tmpfs {tmp_path / 'disk'}".split()
+    done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode:
+        pytest.skip(f"mount is not permitted here: {done.stderr.strip()}")
+    request.addfinalizer(lambda: subprocess.run(["umount", tmp_path / "disk"], check=True))
+    folder = tmp_path / "disk" / "run"
     run = run_petves(folder, f"{BASE} -time_end 9 -output_every 0.02 -checkpoint_every 2", ranks, False)
     one_line(run, str(folder), "cannot be written", "allowed")
     for path in folder.glob("checkpoint*"):
