@@ -10,7 +10,7 @@ import pytest
 from boundary_integral import finer, pressed, single_layer
 from harness import REFERENCES, ROOT, run_petves
 from restarts import agree
-from swinging_circle import swinging_torque
+from scipy.special import iv, ivp, kv, kvp
 
 import petves
 from petves.views.report import report
@@ -149,6 +149,16 @@ def test_drag_in_a_channel_without_flux(tmp_path):
     assert abs(row["flux"]) < 1e-12
     other = last(tmp_path / "file", f"{options} -obstacle_shape file -obstacle_file {tmp_path / 'circle.txt'}")
     assert other["obstacle_force_x"] == pytest.approx(row["obstacle_force_x"], rel=1e-5)
+
+
+def swinging_torque(radius, outer, omega):
+    """The amplitude of the torque on a circle that swings with exp(i omega t) at speed r, viscosity 1, of the fluid up to a
+    circle at rest and of that inside: u'' + u'/r - u/r^2 = i omega u."""
+    k = np.sqrt(1j * omega)
+    a, R = k * radius, k * outer
+    c = np.linalg.solve([[iv(1, a), kv(1, a)], [iv(1, R), kv(1, R)]], [radius, 0])
+    slope = k * (c @ [ivp(1, a), kvp(1, a)] - radius * ivp(1, a) / iv(1, a))  # outside less inside
+    return 2 * np.pi * radius**2 * slope
 
 
 def test_a_swinging_circle(tmp_path):

@@ -7,11 +7,13 @@ import random
 import shutil
 import signal
 import subprocess
+import time
 from pathlib import Path
 
+import h5py
 import harness
+import numpy as np
 import pytest
-from double_starts import KINDS, double_start
 from harness import PETVES, SANITIZE, attribute, mpirun, preloaded, read_series, run_petves, run_python, simulation
 from harness import wait_for, without_mpirun
 from refusals import refused
@@ -24,7 +26,8 @@ SCENE = "-domain_cells 24,24 -vesicle_semi_axes 0.3,0.5 -flow_type shear -time_s
 
 def start(folder: Path, options: str, ranks: int = 1, **how) -> subprocess.Popen:
     """A run in the background that has no end unless the options say one."""
-    return harness.start(folder, f"{SCENE} -time_end 1000 {options}", ranks, **harness.QUIET, **how)
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    return harness.start(folder, f"{SCENE} -time_end 1000 {options}", ranks, **quiet, **how)
 
 
 def ends_with_line(process: subprocess.Popen, *needles: str) -> None:
@@ -44,10 +47,46 @@ def goes_on(folder: Path) -> None:
     assert (folder / "series.csv").read_text().splitlines()[: step + 2] == rows
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_double_starts(kind, tmp_path):
-    for k in range(2):
-        double_start(tmp_path / str(k), kind, random.Random(k))
+STEPS = 300
+END = f"-time_end {0.02 * STEPS} -checkpoint_every 10"
+
+
+def two(folder: Path, kind: str, draw: random.Random) -> list[subprocess.Popen]:
+    """The two runs of a kind; the first may be live already, or both begin in the same moment."""
+    begin = lambda options="": start(folder, f"{END} {options}")
+    restart = f"-restart {folder}/checkpoint.h5"
+    if kind in ("restart twice", "overwrite and restart"):
+        assert begin(f"-time_end {0.02 * (STEPS // 3)}").wait() == 0
+        return [begin("-output_overwrite" if kind == "overwrite and restart" else restart), begin(restart)]
+    first = begin()
+    if kind == "fresh":
+        time.sleep(draw.choice((0, 0, draw.uniform(0, 0.3))))
+        return [first, begin()]
+    wait_for((folder / "checkpoint.h5").exists)
+    return [first, begin(restart if kind == "restart" else "-output_overwrite")]
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("kind", ["fresh", "overwrite", "restart", "restart twice", "overwrite and restart"])
+def test_double_starts(kind, seed, tmp_path):
+    """Of two runs those that are not refused end well. The folder has every row, every frame, the last checkpoint and an end, and
+    no lock is left behind."""
+    folder = tmp_path / "run"
+    runs = two(folder, kind, random.Random(seed))
+    said = [run.communicate(timeout=120)[1] for run in runs]
+    for run, text in zip(runs, said):
+        assert run.returncode in (0, 1), text
+        if run.returncode:
+            assert text.count("\n") == 1 and text.startswith("petves: error: -output_dir"), text
+            assert "in use by process" in text or "holds" in text, text
+    assert sum(run.returncode for run in runs) < 2, said
+    assert read_series(folder / "series.csv")["step"].tolist() == list(range(STEPS + 1))
+    with h5py.File(folder / "run.h5") as file:
+        np.testing.assert_allclose(file["time"][:], 0.1 * np.arange(STEPS // 5 + 1), atol=1e-12)
+        assert len(file["fluid/u"]) == len(file["time"]) and np.isfinite(file["vesicle/markers"][:]).all()
+    assert attribute(folder / "checkpoint.h5") == STEPS
+    assert json.loads((folder / "summary.json").read_text())["reason"] == "finished"
+    assert not (folder / "run.lock").exists()
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -169,10 +169,6 @@ def attribute(path: Path, name: str = "step"):
         return file.attrs[name]
 
 
-#: Streams of a run in the background of which errors alone are read.
-QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
-
-
 def start(folder: Path, options: str, ranks: int = 1, **streams) -> subprocess.Popen:
     """petves in the background."""
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
