@@ -24,8 +24,9 @@ def cached_run(tmp_path_factory):
 
 
 #: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.
-LONG = "views runs newcomer docs programs metamorphic valgrind accuracy studies fuzz damaged".split()
-LONG += "output_faults chart interrupted stability restart python tools one_folder contrast coupled_accuracy elastic baselines".split()
+LONG = "valgrind views runs docs newcomer programs output_faults restart accuracy tools one_folder damaged".split()
+LONG += "metamorphic studies fuzz pictures chart notebooks coupled_runs coupled_accuracy unlike_ranks forged stability".split()
+LONG += "python python_package interrupted free_bodies elastic obstacles contrast baselines".split()
 
 
 def pytest_configure(config):

@@ -2,6 +2,7 @@
 a capsule in unbounded fluid by explicit steps."""
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.special import exp1
 
 
@@ -133,14 +134,15 @@ def pressed(vesicle, solid, period, stream, times):
     return velocity[::times], -x[m:].reshape(w, 2).sum(0)
 
 
-def capsule(circle, tension, rate, step, end):
+def capsule(circle, tension, rate, end):
     """A capsule that is a circle without tension at first, (n, 2), n odd, in unbounded shear (rate y, 0), viscosity 1, by
-    the explicit Runge-Kutta method of order 4 up to the time `end`. tension: of the stretch. Returns the points."""
+    an explicit Runge-Kutta method up to the time `end`. tension: of the stretch. Returns the points."""
     n = len(circle)
     D = derivative(n)
     rest = np.linalg.norm(D @ circle, axis=1)
 
-    def velocity(X):
+    def velocity(t, x):
+        X = x.reshape(n, 2)
         T = D @ X
         speed = np.linalg.norm(T, axis=1)
         force = D @ (T * (tension(speed / rest) / speed)[:, None])
@@ -148,11 +150,6 @@ def capsule(circle, tension, rate, step, end):
         r2 = (d**2).sum(-1)[..., None, None]
         plain = np.where(r2 > 0, r2, 1)
         S = -0.5 * np.log(plain) * np.eye(2) + d[..., :, None] * d[..., None, :] / plain + own_part(X)
-        return np.einsum("ijcd,jd->ic", S, force) / (4 * np.pi) + rate * X[:, 1:] * [1, 0]
+        return (np.einsum("ijcd,jd->ic", S, force) / (4 * np.pi) + rate * X[:, 1:] * [1, 0]).ravel()
 
-    for _ in range(round(end / step)):
-        a = velocity(circle)
-        b = velocity(circle + step / 2 * a)
-        c = velocity(circle + step / 2 * b)
-        circle = circle + step / 6 * (a + 2 * b + 2 * c + velocity(circle + step * c))
-    return circle
+    return solve_ivp(velocity, (0, end), circle.ravel(), rtol=1e-8, atol=1e-10).y[:, -1].reshape(n, 2)
