@@ -337,7 +337,7 @@ def test_ranks_and_restart_with_inertia(inertia, steps, tmp_path):
     options += f" -vesicle_semi_axes .3,.4 -obstacle_density .3,3 -obstacle_force 1,0,0,-2 -fluid_inertia {inertia}"
     options += " -time_step .01 -output_every .1 -coupled_ksp_rtol 1e-8 -output_overwrite"
     columns = [f"obstacle_{name}_{body}" for name in ("center_y", "angle", *RATES) for body in (1, 2)]
-    agree(tmp_path, options, 0.1, 0.3, ("center_x", "inclination", "coupled_its", *columns), rel=1e-6)
+    agree(tmp_path, options, 0.1, 0.5, ("center_x", "inclination", "coupled_its", *columns), rel=1e-6)
 
 
 @pytest.mark.parametrize("steps", ["", "-time_adapt error -time_adapt_tol 1e-4"])
@@ -347,4 +347,4 @@ def test_ranks_and_restart(steps, tmp_path):
     options += " -domain_box -1.5,1.5,-1.5,1.5 -domain_cells 96,96 -vesicle_center -.5,.1 -vesicle_semi_axes .3,.4"
     options += " -vesicle_viscosity_ratio 3 -obstacle_force 1,0,0,-2 -time_step .02 -output_every .1 -output_overwrite"
     columns = [f"obstacle_{name}_{body}" for name in ("center_y", "angle", *RATES) for body in (1, 2)]
-    agree(tmp_path, options, 0.2, 0.5, ("center_x", "inclination", "coupled_its", *columns), (3,))
+    agree(tmp_path, options, 0.2, 1, ("center_x", "inclination", "coupled_its", *columns), (3,))
