@@ -13,8 +13,8 @@ BUILD := build$(KIND)
 BIN := bin$(KIND)
 LIBDIR := lib$(KIND)
 PYTHON := /usr/bin/python3
-# Where make install puts the Python package: with PREFIX /usr/local, where Debian's Python finds it.
-PYTHON_DIR ?= $(PREFIX)/lib/python$(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')/dist-packages
+# Where make install puts the Python package: where Debian's Python finds it with PREFIX /usr/local or ~/.local.
+PYTHON_DIR ?= $(PREFIX)/lib/python$(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')/$(if $(filter /usr/local,$(abspath $(PREFIX))),dist,site)-packages
 
 # Debian packages: to build and run, then to test.
 PACKAGES := gcc libc6-dev make pkg-config libpetsc-real-dev libfftw3-dev libfftw3-mpi-dev libhdf5-openmpi-dev libmuparser-dev openmpi-bin libopenblas0-serial \

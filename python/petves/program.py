@@ -61,7 +61,7 @@ def _find() -> tuple[Path | None, Path | None]:
     if os.environ.get("PETVES") or (found and library != PACKAGE / LIBRARY):
         library = None
     if not library and not found:
-        raise Error(f"{programs()[0]}: no such program; build it with make, or set PETVES")
+        raise Error(f"{os.environ.get('PETVES') or 'bin/petves'}: no such program; build it with make, or set PETVES")
     return (None, library) if library else (found, None)
 
 

@@ -246,7 +246,7 @@ static void TypedTakeYaml(Typed *t, Source *from, const char *text, size_t lengt
   char **name = NULL, **value = NULL;
   PetscInt n = 0;
   PetscErrorCode error = strlen(text) < length ? PETSC_ERR_FILE_READ : PETSC_SUCCESS;
-  (void)PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL);
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
   if (!error) error = PetscOptionsCreate(&options);
   if (!error) error = PetscOptionsInsertStringYAML(options, text);
   if (!error) error = PetscOptionsLeftGet(options, &n, &name, &value);

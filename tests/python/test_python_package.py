@@ -123,25 +123,27 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert list((tmp_path / "s").glob("*/run.h5"))
 
     def test_make_install_installs_a_package_that_runs(tmp_path):
-        words = ["make", "-C", str(ROOT), "install", f"PREFIX={tmp_path}", "BIN=bin", "LIBDIR=lib"]
+        """Into ~/.local, where Debian's Python looks too."""
+        prefix = tmp_path / ".local"
+        words = ["make", "-C", str(ROOT), "install", f"PREFIX={prefix}", "BIN=bin", "LIBDIR=lib"]
         done = subprocess.run(words, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, done.stderr
-        (site,) = tmp_path.glob("lib/python3*/dist-packages")
+        (site,) = prefix.glob("lib/python3*/site-packages")
         assert (site / "petves" / "py.typed").is_file() and (site / "petves" / "__init__.pyi").is_file()
-        done = python(["-c", RUN], PYTHONPATH=str(site))
-        assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(tmp_path / "lib" / "libpetves.so")]
+        done = python(["-c", RUN], HOME=str(tmp_path))
+        assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(prefix / "lib" / "libpetves.so")]
         # the tools find bin/petves under the prefix
-        python(["-m", "petves", "sweep", str(tmp_path / "s"), "--vary", "time_end", "0"], PYTHONPATH=str(site))
+        python(["-m", "petves", "sweep", str(prefix / "s"), "--vary", "time_end", "0"], HOME=str(tmp_path))
         environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}
-        words = [tmp_path / "bin" / "petves", "compare", tmp_path / "s" / "time_end=0", tmp_path / "s" / "time_end=0"]
-        done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
+        words = [prefix / "bin" / "petves", "compare", prefix / "s" / "time_end=0", prefix / "s" / "time_end=0"]
+        done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=prefix)
         assert done.returncode == 0, "and the program finds them\n" + done.stderr
-        assert (tmp_path / "s" / "time_end=0" / "compare.png").is_file()
+        assert (prefix / "s" / "time_end=0" / "compare.png").is_file()
         left = "man/man1/petves.1 bash-completion/completions/petves petves/runs/shear.opts doc/petves/README.md"
         left += " doc/petves/docs/options.md doc/petves/docs/gallery/capillary.png"
-        assert all((tmp_path / "share" / name).is_file() for name in left.split())
-        done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={tmp_path}"], capture_output=True)
-        assert done.returncode == 0 and not [path for path in tmp_path.rglob("*petves*") if path.is_file()]
+        assert all((prefix / "share" / name).is_file() for name in left.split())
+        done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={prefix}"], capture_output=True)
+        assert done.returncode == 0 and not [path for path in prefix.rglob("*petves*") if path.is_file()]
 
     def reference() -> list[str]:
         """The names whose docstrings docs/api.md shows, in the site."""
