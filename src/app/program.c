@@ -98,7 +98,8 @@ static PetscBool FindBeside(const char *const places[], const char *file, char p
 
 /* Where Python finds the package: that of the source tree or of the prefix, whichever this program is in. */
 static void FindPackage(void) {
-  static const char *const places[] = {"../python", "../lib/python3*/site-packages", "../lib/python3*/dist-packages", NULL};
+  static const char *const places[] = {"../python", "../lib/python3*/site-packages", "../lib/python3*/dist-packages",
+                                       NULL};
   static const char file[] = "petves/__main__.py";
   char path[PETSC_MAX_PATH_LEN] = "", paths[2 * PETSC_MAX_PATH_LEN];
   const char *const before = getenv("PYTHONPATH");

@@ -146,7 +146,9 @@ def test_container_file_has_no_lint():
 def test_container_is_built():
     run(["podman", "build", "-f", PACKAGING / "Containerfile", "-t", "petves-test", ROOT])
     assert f"petves {VERSION}" in run(["podman", "run", "--rm", "petves-test", "-version"])
-    run("podman run --rm --entrypoint python3 petves-test -c".split() + ["import petves; petves.Simulation"])  # with petsc4py
+    run(
+        "podman run --rm --entrypoint python3 petves-test -c".split() + ["import petves; petves.Simulation"]
+    )  # with petsc4py
 
 
 if not SANITIZE and not OWN:
