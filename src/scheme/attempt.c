@@ -6,7 +6,8 @@
 #define STILL 1e-5 /* of R0: less than this is not looked at, steady shapes miss by rounding */
 #define FAR 1.1    /* times as far from its extrapolation as from where it began: its motion has stopped */
 #define SMOOTH 0.7 /* least gain of a predictor through three states over that through two for order 3 */
-#define KEPT 0.8   /* after a step of order 3, so that orders and a0 do not alternate where the gain is about SMOOTH */
+#define KEPT                                                                                                           \
+  0.8 /* after a fixed step of order 3, so that orders and a0 do not alternate where the gain is about SMOOTH */
 
 /* Vectors of the states that the step goes on from. */
 #define STATES(s, which)                                                                                               \
@@ -297,7 +298,8 @@ static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
   }
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, miss, BDF_MOST - 1 + BDF_STATES, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
-  next->order = miss[1] < (d->order == 3 ? KEPT : SMOOTH) * miss[0] ? 3 : PetscMin(s->scene->scheme.order, 2);
+  const PetscReal gain = d->order == 3 && !s->policy.adaptive ? KEPT : SMOOTH;
+  next->order = miss[1] < gain * miss[0] ? 3 : PetscMin(s->scene->scheme.order, 2);
   next->guess = solved ? 1 : 2;
   for (PetscInt k = 2; k <= solved; k++)
     if (of_U[k - 1] < of_U[next->guess - 1]) next->guess = k;
