@@ -22,6 +22,7 @@ TWELVE = f"-vesicle_count 12 -vesicle_center {ROWS} -vesicle_semi_axes 0.08,0.12
 SOLID = "-obstacle_shape posts -obstacle_radius 0.2 -obstacle_center 0.7,0.7"
 STRETCHING = "-membrane_law hooke -membrane_stretching 1 -membrane_viscosity 1 -membrane_permeability 0.1"
 MOVING = f"{SOLID} -flow_type uniform -obstacle_moving -obstacle_velocity 1,0"
+SPACE = "-dim 3 -sphere_degree 4 -flow_type shear -time_step 0.1 -time_end 0.2 -output_every 0.1"
 POSTS = f"-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 {SOLID}"
 
 #: Options and status. Restarts: one that goes on, one whose first step is refused, one of another scene.
@@ -51,6 +52,8 @@ LONG = SHORT | {
     "inertial_post": (f"{TWO_STEPS} -domain_cells 32,32 {SOLID} -obstacle_free all -fluid_inertia convective", 0),
     "membranes": (f"{TWO_STEPS} {STRETCHING} -membrane_memory 1 -tracer_grid 2,2", 0),
     "auto": (f"{SHEAR} -scheme_auto 0.01", 0),
+    "space": (f"{SPACE} -vesicle_count 2 -vesicle_center 0,0,0,2.8,0,0", 0),
+    "space_contrast": (f"{SPACE} -vesicle_viscosity_ratio 5 -bending_newton 2", 0),
     "no_vesicle": ("-domain_cells 16,16 -vesicle_shape none -flow_type shear -time_end 0.03", 0),
 }
 
