@@ -1,4 +1,4 @@
-/* petves: inextensible vesicles in two-dimensional viscous flow, on PETSc. Public C API.
+/* petves: vesicles and capsules in viscous flow, on PETSc. Public C API.
 
    A simulation is built from PETSc's options database (docs/options.md lists them), stepped or run to its end, and
    asked for its state. Every call is collective over the simulation's communicator unless it says otherwise, and

@@ -6,15 +6,23 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+/* Stop where a question is one of the plane alone. */
+static PetscErrorCode CheckPlane(Simulation s) {
+  PetscFunctionBeginUser;
+  PetvesCheck(!s->space, s->scene->comm, "-dim 3: not from Python or C; allowed: 2, or petves run");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SimulationGetTime(Simulation s, PetscInt *step, PetscReal *time) {
   PetscFunctionBeginUser;
-  if (step) *step = s->scheme->state.step;
-  if (time) *time = s->scheme->state.t;
+  if (step) *step = s->space ? s->space->state.step : s->scheme->state.step;
+  if (time) *time = s->space ? s->space->state.t : s->scheme->state.t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec *X, Vec *U) {
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
   if (w || p) PetscCall(SchemeFields(s->scheme));
   if (w) *w = s->scheme->state.w;
   if (p) *p = s->scheme->state.p;
@@ -28,6 +36,7 @@ PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, 
                                        const PetscReal **tension) {
   const PetscReal **const wanted[] = {markers, velocity, tension}; /* STATE_MARKERS, STATE_VELOCITY, STATE_TENSION */
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
   for (int k = 0; k < 3; k++) {
     const StatePart part = StatePartOf(s->scheme, &s->scheme->state, (StatePartName)k);
     if (!wanted[k]) continue;
@@ -72,6 +81,7 @@ static PetscObject FindObject(Simulation s, const char name[]) {
 
 PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject *object) {
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
   if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(s->scheme));
   *object = FindObject(s, name);
   if (!*object) PetscCall(SchemeGetKSP(s->scheme, name, (KSP *)object));
@@ -80,7 +90,7 @@ PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject 
 
 PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt start[], PetscInt sizes[7]) {
   PetscFunctionBeginUser;
-  PetvesCheck(!s->space, s->scene->comm, "-dim 3: not from Python; allowed: 2, or petves run");
+  PetscCall(CheckPlane(s));
   const Grid g = s->fluid->grid;
   *vesicles = s->layout->bodies;
   for (PetscInt v = 0; start && v <= s->layout->bodies; v++) start[v] = s->layout->start[v];
@@ -93,8 +103,9 @@ PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt sta
 }
 
 PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscInt start[], PetscReal markers[]) {
-  const Obstacles o = s->coupling->bodies->obstacles;
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
+  const Obstacles o = s->coupling->bodies->obstacles;
   *obstacles = o ? o->layout->bodies : 0;
   for (PetscInt v = 0; start && v <= *obstacles; v++) start[v] = o ? o->layout->start[v] : 0;
   if (o && markers) ObstaclesCurves(o, StateInstant(&s->scheme->state), markers);
@@ -116,8 +127,9 @@ PetscErrorCode SimulationGetColumn(Simulation s, PetscInt i, const char **name) 
 }
 
 PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[]) {
-  const Record *record = &s->output->record;
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
+  const Record *record = &s->output->record;
   PetscCheck(vesicle >= -1 && vesicle < s->layout->bodies, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle, s->layout->bodies - 1);
   PetscCall(PetscArraycpy(row, vesicle < 0 ? record->last : record->each + vesicle * COLUMN_COUNT, COLUMN_COUNT));
@@ -126,12 +138,14 @@ PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[])
 
 PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal v[]) {
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
   PetscCall(CellFields(s->scheme, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetCellPressure(Simulation s, PetscReal p[]) {
   PetscFunctionBeginUser;
+  PetscCall(CheckPlane(s));
   PetscCall(CellFields(s->scheme, NULL, NULL, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,15 +158,16 @@ PetscErrorCode SimulationGetReason(Simulation s, const char **reason) {
 
 PetscErrorCode SimulationCheckpoint(Simulation s) {
   PetscFunctionBeginUser;
-  PetscCall(OutputCheckpoint(s->output));
+  PetscCall(s->space ? SpaceCheckpoint(s->space_output) : OutputCheckpoint(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetWarning(Simulation s, PetscInt i, const char **text) {
-  const Warnings *warnings = &s->scheme->warnings;
   const PetscInt own = *s->scene->warning ? 1 : 0;
   PetscFunctionBeginUser;
   *text = NULL;
+  if (s->space) PetscFunctionReturn(PETSC_SUCCESS);
+  const Warnings *warnings = &s->scheme->warnings;
   if (i >= 0 && i < own)
     *text = s->scene->warning;
   else if (i >= own && i < own + warnings->n)

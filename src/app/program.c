@@ -14,7 +14,7 @@
 #endif
 
 static const char usage[] =
-    "petves: vesicles and capsules in two-dimensional viscous flow\n"
+    "petves: vesicles and capsules in viscous flow, in the plane, and vesicles in three dimensions\n"
     "\n"
     "usage: petves run SCENE [-option value ...]            a scene: a file, or a name of petves scenes\n"
     "       petves -option value ...                        the same without a file\n"

@@ -5,7 +5,7 @@
 #include "space/fromscene.h"
 #include <stdlib.h>
 
-static const char help[] = "petves: inextensible vesicles in two-dimensional viscous flow.\n"
+static const char help[] = "petves: vesicles and capsules in viscous flow.\n"
                            "usage: mpirun -n RANKS petves run SCENE.opts [-option value ...]\n\n";
 
 /* MPI is started here and not by PETSc: what the user typed is read and checked before PETSc sees it. */

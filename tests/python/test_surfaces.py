@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from harness import SITE, run_petves
+from harness import SITE, run_petves, run_python
 
 import petves
 from petves.surfaces import SurfaceRun
@@ -41,6 +41,13 @@ def test_pictures_and_a_film(pair):
     assert petves.movie(pair, pair / "film.gif", width=400).stat().st_size > 10000
     with pytest.raises(petves.RunError, match="three dimensions"):
         petves.plot(pair, columns=["gap"])
+
+
+def test_what_is_of_the_plane_says_so(pair):
+    with pytest.raises(petves.RunError, match="a run in three dimensions; allowed"):
+        petves.report(pair)
+    done = run_python("import petves; petves.Simulation(dim=3)", good=False)
+    assert done.returncode == 1 and "-dim 3: not from Python or C; allowed: 2, or petves run" in done.stderr
 
 
 @pytest.mark.skipif(not (SITE / "vtk.py").exists(), reason="vtk is not to be had")
