@@ -48,8 +48,8 @@ def test_ctrl_c_is_ignored_where_a_shell_says_so(tmp_path):
 def test_wall_limit_stops_in_time(tmp_path):
     """With room for one more step and the checkpoint, and not at once."""
     begin = time.time()
-    run = run_petves(tmp_path / "run", f"{PAPER} {BASE} -domain_cells 96,96 -time_end 1000 -time_wall_limit 1.5", 2)
-    assert time.time() - begin < 6.5, "limit and start of mpirun on a busy machine"
+    run = run_petves(tmp_path / "run", f"{PAPER} {BASE} -domain_cells 96,96 -time_end 1000 -time_wall_limit 3", 2)
+    assert time.time() - begin < 8, "limit and start of mpirun on a busy machine"
     assert "-time_wall_limit" in run.stdout
     assert run.summary["reason"] == "stopped"
     assert len(run.series["step"]) > 2 and (run.folder / "checkpoint.h5").exists()
