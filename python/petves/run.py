@@ -15,7 +15,6 @@ from petves.errors import RunError as RunError
 from petves.files import read_file, read_summary
 from petves.measures import ENERGIES
 from petves.runfiles import read_frames, read_h5, read_series
-from petves.surfaces import is_space
 
 #: Vesicles up to which series.csv has columns of each.
 FEW = 40
@@ -118,10 +117,6 @@ class Run:
         folder = Path(folder)
         if not folder.is_dir():
             raise RunError(f"{folder}: no such folder; give the -output_dir of a run")
-        if is_space(folder):
-            raise RunError(
-                f"{folder}: a run in three dimensions; allowed: one in the plane, or petves plot, movie or load"
-            )
         frames = read_h5(folder / "run.h5", read_frames)
         series, summary = read_series(folder / "series.csv"), folder / "summary.json"
         missing = [name for name in COLUMNS if name not in series]

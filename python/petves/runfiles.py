@@ -75,6 +75,10 @@ def _check_own(file: h5py.File) -> None:
 
 def read_frames(file: h5py.File) -> dict[str, Any]:
     """Return what a Run has of run.h5, by its names. A frame's values are written before its time, which counts it."""
+    if file.attrs.get("dim", 2) == 3:
+        raise RunError(
+            f"{file.filename}: a run in three dimensions; allowed: one in the plane, or petves plot, movie or load"
+        )
     time, box = file["time"][:], np.asarray(file.attrs["box"], float)
     if not len(time):
         raise RunError(f"{file.filename}: no saved time in it")

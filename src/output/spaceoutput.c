@@ -99,7 +99,10 @@ static PetscErrorCode SpaceOutputFrame(SpaceOutput o, PetscBool scheduled) {
 
 PetscErrorCode SpaceOutputBegin(SpaceOutput o) {
   PetscFunctionBeginUser;
-  if (!*o->scene->output.restart) PetscCall(SpaceOutputRow(o));
+  if (*o->scene->output.restart) /* the checkpoint's row is there already */
+    PetscCall(SpaceRecordMeasure(&o->record));
+  else
+    PetscCall(SpaceOutputRow(o));
   if (!o->go_on) PetscCall(SpaceOutputFrame(o, PETSC_TRUE));
   SpaceOutputNextTime(o);
   PetscFunctionReturn(PETSC_SUCCESS);

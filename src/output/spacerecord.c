@@ -79,8 +79,8 @@ static PetscErrorCode SpaceRecordVesicle(Space s, PetscInt v, PetscReal row[]) {
   row[SPACE_BENDING] = vesicle->setting.bending * at->energy;
   row[SPACE_AREA] = at->area;
   row[SPACE_VOLUME] = at->volume;
-  row[SPACE_AREA_ERROR] = at->area / vesicle->setting.area - 1;
-  row[SPACE_VOLUME_ERROR] = at->volume / vesicle->setting.volume - 1;
+  row[SPACE_AREA_ERROR] = at->area / vesicle->area - 1;
+  row[SPACE_VOLUME_ERROR] = at->volume / vesicle->volume - 1;
   for (int d = 0; d < 3; d++) {
     row[SPACE_CENTER_X + d] = m.center[d];
     row[SPACE_AXIS_SHORT + d] = m.axis[d];
@@ -106,10 +106,9 @@ static PetscReal SpaceRecordCombine(const SpaceRecord *r, int c) {
   return kinds[c] == KIND_MEAN ? value / (PetscReal)r->space->share.vesicles : value;
 }
 
-PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
+PetscErrorCode SpaceRecordMeasure(SpaceRecord *r) {
   const Space s = r->space;
   PetscMPIInt all;
-  size_t used = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(r->each, s->share.vesicles * SPACE_COUNT));
   for (PetscInt v = 0; v < s->share.own; v++)
@@ -125,7 +124,14 @@ PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
   r->last[SPACE_GAP] = s->cross ? s->cross->gap : NAN;
   r->last[SPACE_ITS] = s->report.its;
   r->last[SPACE_WALL] = s->report.seconds;
-  r->its += s->report.its;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceRecordTake(SpaceRecord *r) {
+  size_t used = 0;
+  PetscFunctionBeginUser;
+  PetscCall(SpaceRecordMeasure(r));
+  r->its += r->space->report.its;
   for (PetscInt v = 0; v <= SpaceRecordOwn(r); v++)
     for (int c = 0; c < SPACE_COUNT; c++) {
       const PetscReal x = v ? r->each[(v - 1) * SPACE_COUNT + c] : r->last[c];

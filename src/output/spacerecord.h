@@ -50,8 +50,10 @@ typedef struct {
   PetscInt its; /* of the run */
 } SpaceRecord;
 
-/* SpaceRecordCreate - a row of zeros, with the header. Not collective. SpaceRecordTake - the row of the present state
-   and the last step. Collective. */
+/* SpaceRecordCreate - a row of zeros, with the header. Not collective. SpaceRecordMeasure - the
+   numbers of the present state and the last step. SpaceRecordTake - their row, which is added to the totals.
+   Collective. */
 PETSC_EXTERN PetscErrorCode SpaceRecordCreate(Space space, SpaceRecord *record);
 PETSC_EXTERN PetscErrorCode SpaceRecordDestroy(SpaceRecord *record);
+PETSC_EXTERN PetscErrorCode SpaceRecordMeasure(SpaceRecord *record);
 PETSC_EXTERN PetscErrorCode SpaceRecordTake(SpaceRecord *record);

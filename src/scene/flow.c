@@ -71,8 +71,9 @@ void FlowPressureGradient(const Flow *flow, PetscReal nu, PetscReal g[2]) {
 }
 
 PetscReal FlowShearRate(const Flow *flow) {
-  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION) return PetscAbsReal(flow->rate);
-  if (flow->type == FLOW_POISEUILLE) return 2 * PetscAbsReal(flow->peak) / flow->half_width;
+  if (flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION || flow->type == FLOW_AXIAL)
+    return PetscAbsReal(flow->rate);
+  if (flow->type == FLOW_POISEUILLE || flow->type == FLOW_TUBE) return 2 * PetscAbsReal(flow->peak) / flow->half_width;
   return 0;
 }
 

@@ -81,25 +81,29 @@ static PetscErrorCode SceneCheckSpaceLists(Scene s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest radius, and the bending modulus over nu R0^3 of the stiffest vesicle (1/time). */
-static void SceneSpaceScales(Scene s, PetscReal *R0, PetscReal *relaxation) {
-  *R0 = *relaxation = 0;
+/* The largest radius and bending modulus, of which -flow_chi and -flow_ca are, and the fastest rate of relaxation: the
+   largest modulus over nu R0^3 of a vesicle (1/time). */
+static void SceneSpaceScales(Scene s, PetscReal *R0, PetscReal *bending, PetscReal *relaxation) {
+  *R0 = *bending = *relaxation = 0;
   for (PetscInt v = 0; v < s->vesicles.count; v++) {
+    const PetscReal kappa = ListEntry(&s->membrane.stiffness, 1, v, 0);
     PetscReal R = ListEntry(&s->space.radius, 1, v, 0);
     if (SceneGiven(s, "-vesicle_half_axes"))
       R = PetscCbrtReal(ListEntry(&s->space.half_axes, 3, v, 0) * ListEntry(&s->space.half_axes, 3, v, 1) *
                         ListEntry(&s->space.half_axes, 3, v, 2));
     *R0 = PetscMax(*R0, R);
-    *relaxation = PetscMax(*relaxation, ListEntry(&s->membrane.stiffness, 1, v, 0) / (s->fluid.nu * R * R * R));
+    *bending = PetscMax(*bending, kappa);
+    *relaxation = PetscMax(*relaxation, kappa / (s->fluid.nu * R * R * R));
   }
 }
 
 PetscErrorCode SceneResolveSpace(Draft s) {
   const PetscInt count = s->vesicles.count;
-  PetscReal R0, relaxation;
+  PetscReal R0, bending, relaxation, softest = PETSC_MAX_REAL;
   PetscFunctionBeginUser;
   PetscCall(SceneCheckSpaceLists(s));
   const PetscBool ratio = SceneHasContrast(s);
+  for (PetscInt k = 0; k < s->membrane.stiffness.n; k++) softest = PetscMin(softest, s->membrane.stiffness.v[k]);
   const SceneRule rules[] = {
       {FlowIsCustom(&s->flow), "-flow_type {-flow_type}: of the plane; allowed with -dim 3: "
                                "quiescent|shear|poiseuille|extension|uniform|axial|tube"},
@@ -115,20 +119,17 @@ PetscErrorCode SceneResolveSpace(Draft s) {
       {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number from 4 to 32"},
       {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
                            "-dim 3: 1, or one vesicle"},
-      {s->membrane.stiffness.v[0] == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
+      {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
   PetscCall(REFUSE(s, rules));
   for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
     const PetscReal *axis = s->space.axis.v + 3 * v;
     PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
                               "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
-  SceneSpaceScales(s, &R0, &relaxation);
-  if (s->flow.chi != 0) s->flow.rate = s->flow.chi * relaxation;
-  if (s->flow.ca != 0) s->flow.peak = s->flow.ca * relaxation * R0;
-  const PetscReal rate = s->flow.type == FLOW_AXIAL  ? s->flow.rate
-                         : s->flow.type == FLOW_TUBE ? s->flow.peak / s->flow.half_width
-                                                     : FlowShearRate(&s->flow);
-  if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(PetscAbsReal(rate), relaxation);
+  SceneSpaceScales(s, &R0, &bending, &relaxation);
+  if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0 * R0 * R0);
+  if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0 * R0);
+  if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(FlowShearRate(&s->flow), relaxation);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

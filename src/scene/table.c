@@ -91,8 +91,8 @@ static PetscBool IsChannel(const void *scene) {
 static const OptionNeed
   need_strain = {"-flow_type shear, extension or axial", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_EXTENSION) | IS(FLOW_AXIAL)},
   need_channel = {"-flow_type poiseuille or tube", AT(flow.type), IS(FLOW_POISEUILLE) | IS(FLOW_TUBE)},
-  need_extension = {"-flow_type extension", AT(flow.type), IS(FLOW_EXTENSION)},
-  need_sheared = {"-flow_type shear, poiseuille or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_POISEUILLE) | IS(FLOW_EXTENSION) | IS(FLOW_UNIFORM)},
+  need_extension = {"-flow_type extension or axial", AT(flow.type), IS(FLOW_EXTENSION) | IS(FLOW_AXIAL)},
+  need_sheared = {"-flow_type shear, poiseuille or extension", AT(flow.type), IS(FLOW_SHEAR) | IS(FLOW_POISEUILLE) | IS(FLOW_EXTENSION) | IS(FLOW_UNIFORM) | IS(FLOW_AXIAL) | IS(FLOW_TUBE)},
   need_flow = {"a -flow_type that is not quiescent", AT(flow.type), ~(IS(FLOW_QUIESCENT))},
   need_uniform = {"-flow_type uniform", AT(flow.type), IS(FLOW_UNIFORM)},
   need_formula = {"-flow_type formula", AT(flow.type), IS(FLOW_FORMULA)},

@@ -34,25 +34,16 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                 .policy = {.base = s->time.dt}};
   Vesicle3Setting *material;
   PetscReal *X;
-  Sphere sphere;
-  Surface surface;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(count, &material, count * size, &X));
-  PetscCall(SphereCreate(s->space.degree, &sphere));
-  PetscCall(SurfaceCreate(sphere, &surface));
   for (PetscInt v = 0; v < count; v++) {
     SceneFirstShape(s, v, X + v * size);
-    PetscCall(SurfacePlace(surface, X + v * size, PETSC_FALSE));
     material[v] = (Vesicle3Setting){.nu = s->fluid.nu,
                                     .bending = ListEntry(&s->membrane.stiffness, 1, v, 0),
                                     .label_rate = s->space.label_rate,
-                                    .ratio = SceneViscosityRatio(s, v),
-                                    .area = surface->area,
-                                    .volume = surface->volume};
+                                    .ratio = SceneViscosityRatio(s, v)};
     for (int d = 0; d < 3; d++) material[v].weight[d] = SceneWeight(s, v, d);
   }
-  PetscCall(SurfaceDestroy(&surface));
-  PetscCall(SphereDestroy(&sphere));
   PetscCall(SpaceCreate(s->comm, &setting, count, material, X, space));
   PetscCall(PetscFree2(material, X));
   if (!(*space)->cross) PetscFunctionReturn(PETSC_SUCCESS);

@@ -35,7 +35,8 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   s->size = 3 * s->count;
   PetscCall(PetscCalloc1(s->share.own, &s->vesicle));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3Create(s->sphere, &material[s->share.first + v], &s->vesicle[v]));
+    PetscCall(
+        Vesicle3Create(s->sphere, &material[s->share.first + v], X + (s->share.first + v) * s->size, &s->vesicle[v]));
   PetscCall(SpaceStateCreate(s, &s->state));
   PetscCall(SpaceStateCreate(s, &s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateCreate(s, &s->old[j]));
@@ -43,7 +44,7 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(PetscMalloc6(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
                          &s->work.V));
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
-  s->plan = (StepPlan){.level = StepFirstLevel(), .order = PetscMin(setting->order, 2), .guess = 2};
+  s->order = PetscMin(setting->order, 2);
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, &s->cross));
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,7 +79,7 @@ static void SpaceStepsBefore(Space s, PetscReal dt, PetscReal step[BDF_STATES]) 
 static BDF SpaceFormula(Space s, PetscReal dt) {
   PetscReal step[BDF_STATES];
   SpaceStepsBefore(s, dt, step);
-  return BDFCoefficients(PetscMin(s->plan.order, s->past + 1), step);
+  return BDFCoefficients(PetscMin(s->order, s->past + 1), step);
 }
 
 /* Order 3 after a step of size dt that has led to Y, where three states would have told Y better than two. */
@@ -86,7 +87,7 @@ static PetscErrorCode SpaceChooseOrder(Space s, PetscReal dt) {
   const PetscReal *X[BDF_MOST] = {s->state.X, s->old[0].X, s->old[1].X};
   PetscReal step[BDF_STATES], star[BDF_STATES], miss[2] = {0, 0};
   PetscFunctionBeginUser;
-  s->plan.order = PetscMin(s->setting.order, 2);
+  s->order = PetscMin(s->setting.order, 2);
   if (s->setting.order < 3 || s->past < BDF_MOST - 1) PetscFunctionReturn(PETSC_SUCCESS);
   SpaceStepsBefore(s, dt, step);
   for (int q = 0; q < 2; q++) {
@@ -98,7 +99,7 @@ static PetscErrorCode SpaceChooseOrder(Space s, PetscReal dt) {
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, miss, 2, MPIU_REAL, MPI_SUM, s->share.comm));
-  if (miss[1] < PetscSqr(SMOOTH) * miss[0]) s->plan.order = 3;
+  if (miss[1] < PetscSqr(SMOOTH) * miss[0]) s->order = 3;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,7 +168,7 @@ static PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
   *moved = 0;
   PetscCall(VecGetArrayRead(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    const PetscReal R = PetscCbrtReal(0.75 / PETSC_PI * s->vesicle[v]->setting.volume);
+    const PetscReal R = PetscCbrtReal(0.75 / PETSC_PI * s->vesicle[v]->volume);
     PetscReal sum = 0;
     for (PetscInt k = 0; k < s->size; k++) {
       const PetscInt at = v * s->size + k;
@@ -310,7 +311,7 @@ PetscErrorCode SpaceStep(Space s, PetscReal until) {
 SpaceNumbers SpaceGetNumbers(Space s) {
   SpaceNumbers n = {.step = s->state.step,
                     .past = s->past,
-                    .order = s->plan.order,
+                    .order = s->order,
                     .solved = s->state.solved,
                     .t = s->state.t,
                     .made = s->made.a0};
@@ -326,7 +327,7 @@ void SpaceSetNumbers(Space s, const SpaceNumbers *n) {
   s->state.t = n->t;
   s->state.dt_last = n->dt_last[0];
   s->past = n->past;
-  s->plan.order = n->order;
+  s->order = n->order;
   for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = n->dt_last[j];
   s->made.a0 = n->made;
   s->age = AgeSetMemory(n->age);

@@ -30,7 +30,6 @@ typedef struct {
   PetscReal dt, seconds;
   PetscInt its;                     /* of GMRES */
   PetscReal estimate;               /* largest root mean square of X - X* of a vesicle, over its radius */
-  PetscReal stretch;                /* largest |A U| but for the area target (length^2/time): what the solver left */
   char failure[PETVES_MAX_MESSAGE]; /* why the step was not taken; empty: it was taken */
 } SpaceReport;
 
@@ -65,7 +64,7 @@ struct _p_Space {
   SpaceState state, old[BDF_MOST - 1];
   SpaceState start; /* the first state, which a failed first step goes back to */
   PetscInt past;    /* states before the present one that are known */
-  StepPlan plan;
+  PetscInt order;   /* of the next step, where enough states are known */
   SpaceReport report;
   SpaceWork work;
   Mat A;

@@ -5,7 +5,7 @@
 #define LEAST_TENSION 1e-12 /* of the mean of its block, added to it: a sphere's uniform tension moves nothing */
 #define LEAST_MOTION 0.01   /* of the largest: rigid motions that change the shape less, squared, are not fitted */
 
-PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, Vesicle3 *out) {
+PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, const PetscReal X[], Vesicle3 *out) {
   const PetscInt count = sphere->count, size = 3 * count;
   Vesicle3 v;
   PetscFunctionBeginUser;
@@ -16,6 +16,9 @@ PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, Ves
   v->size = size;
   PetscCall(SurfaceCreate(sphere, &v->at));
   PetscCall(SurfaceCreate(sphere, &v->about));
+  PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
+  v->area = v->at->area;
+  v->volume = v->at->volume;
   PetscCall(PetscMalloc3(size * size, &v->M, 4 * count * size, &v->rows, 4 * count * size, &v->columns));
   PetscCall(PetscCalloc3(size * size, &v->pull, size, &v->clean, size, &v->known));
   if (setting->ratio != 1) PetscCall(PetscMalloc2(size * size, &v->inverse, size, &v->pivot));
@@ -226,7 +229,7 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
   if (U) PetscCall(Vesicle3RigidPart(v, Xstar, U, w));
   if (U) PetscCall(Vesicle3AddTangential(v, 1, w, b));
   for (PetscInt k = 0; k < v->size; k++) grown += v->columns[v->size * v->size + k] * (Xhat[k] - Xstar[k]);
-  b[v->size] = v->a0 * (grown - (v->setting.area - v->at->area) / PetscSqrtReal(4 * PETSC_PI));
+  b[v->size] = v->a0 * (grown - (v->area - v->at->area) / PetscSqrtReal(4 * PETSC_PI));
   PetscCall(PetscFree(w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -257,7 +260,7 @@ PetscErrorCode Vesicle3KeepVolume(Vesicle3 v, PetscReal X[]) {
   for (int pass = 0; pass < 2; pass++) {
     PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
     PetscCall(SphereTableProject(&v->at->sphere->fine, v->count, 3, v->at->normal, shift));
-    for (PetscInt k = 0; k < v->size; k++) X[k] += shift[k] * (v->setting.volume - v->at->volume) / v->at->area;
+    for (PetscInt k = 0; k < v->size; k++) X[k] += shift[k] * (v->volume - v->at->volume) / v->at->area;
   }
   PetscCall(PetscFree(shift));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,29 +23,30 @@ typedef struct {
   PetscReal bending;    /* bending modulus kappa (length^5/time^2: over the density, as nu is) */
   PetscReal label_rate; /* gamma (1/time) */
   PetscReal ratio;      /* viscosity inside over outside */
-  PetscReal area, volume;
-  PetscReal weight[3]; /* difference of the densities over that outside, times gravity (length/time^2) */
+  PetscReal weight[3];  /* difference of the densities over that outside, times gravity (length/time^2) */
 } Vesicle3Setting;
 
 typedef struct _p_Vesicle3 *Vesicle3;
 struct _p_Vesicle3 {
   Vesicle3Setting setting;
-  PetscInt count, size; /* harmonics, 3 count */
-  Surface at;           /* X* */
-  Surface about;        /* Y */
-  PetscReal *M;         /* [size][size] own mobility */
-  PetscReal *inverse;   /* [size][size] of (1 + ratio)/2 + (1 - ratio) D, factored; NULL where the ratio is 1 */
-  PetscBLASInt *pivot;  /* [size] of it */
-  PetscReal *rows;      /* [size][4 count] L = -[P_n; A] */
-  PetscReal *columns;   /* [4 count][size] C */
-  PetscReal *pull;      /* [size][size] K_s */
-  PetscReal *clean;     /* [size] gamma Lambda */
-  PetscReal *known;     /* [size] */
+  PetscReal area, volume; /* of the first shape, which the membrane keeps */
+  PetscInt count, size;   /* harmonics, 3 count */
+  Surface at;             /* X* */
+  Surface about;          /* Y */
+  PetscReal *M;           /* [size][size] own mobility */
+  PetscReal *inverse;     /* [size][size] of (1 + ratio)/2 + (1 - ratio) D, factored; NULL where the ratio is 1 */
+  PetscBLASInt *pivot;    /* [size] of it */
+  PetscReal *rows;        /* [size][4 count] L = -[P_n; A] */
+  PetscReal *columns;     /* [4 count][size] C */
+  PetscReal *pull;        /* [size][size] K_s */
+  PetscReal *clean;       /* [size] gamma Lambda */
+  PetscReal *known;       /* [size] */
   PetscReal a0;
 };
 
-/* Vesicle3Create - nowhere yet. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, Vesicle3 *vesicle);
+/* Vesicle3Create - of the first shape X[size], placed nowhere yet. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, const PetscReal X[],
+                                           Vesicle3 *vesicle);
 PETSC_EXTERN PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle);
 
 /* Vesicle3Place - surface, mobility, rows and pull at X*[size]; sigma[count]: the last tension. done:

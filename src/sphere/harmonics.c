@@ -1,13 +1,7 @@
 #include "sphere/harmonics.h"
 
 PetscInt HarmonicsDegree(PetscInt k) {
-  PetscInt l = (PetscInt)PetscSqrtReal((PetscReal)k + 0.5);
-  return l;
-}
-
-PetscInt HarmonicsOrder(PetscInt k) {
-  const PetscInt l = HarmonicsDegree(k);
-  return k - l * l - l;
+  return (PetscInt)PetscSqrtReal((PetscReal)k + 0.5);
 }
 
 /* P[l][m] at x = cos theta, s = sin theta, rows of p + 1; 0 for m > l. */

@@ -12,9 +12,8 @@ static inline PetscInt HarmonicsCount(PetscInt p) {
   return (p + 1) * (p + 1);
 }
 
-/* HarmonicsDegree - l of Y_k, HarmonicsOrder - m. Not collective. */
+/* HarmonicsDegree - l of Y_k. Not collective. */
 PETSC_EXTERN PetscInt HarmonicsDegree(PetscInt k);
-PETSC_EXTERN PetscInt HarmonicsOrder(PetscInt k);
 
 /* Values and derivatives: Y, Y_theta, Y_phi, Y_theta_theta, Y_theta_phi, Y_phi_phi. */
 enum { HARMONIC, HARMONIC_T, HARMONIC_P, HARMONIC_TT, HARMONIC_TP, HARMONIC_PP, HARMONIC_PARTS };

@@ -124,7 +124,9 @@ PetscErrorCode SphereCreate(PetscInt p, Sphere *out) {
 
 PetscErrorCode SphereNormalTables(Sphere s) {
   PetscFunctionBeginUser;
-  if (!s->normal.n) PetscCall(TurnedGridsCreate(2 * s->p, 3 * s->p / 2, &s->shape.grid, &s->normal));
+  if (s->normal.n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TurnedGridsCreate(2 * s->p, 3 * s->p / 2, &s->shape.grid, &s->normal));
+  PetscCall(SphereTableCreate(2 * s->p, 2 * s->p, 1, &s->twice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,6 +136,7 @@ PetscErrorCode SphereDestroy(Sphere *sphere) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SphereTableDestroy(&s->shape));
   PetscCall(SphereTableDestroy(&s->fine));
+  PetscCall(SphereTableDestroy(&s->twice));
   PetscCall(PetscFree2(s->turned.Y, s->turned.weight));
   PetscCall(PetscFree2(s->normal.Y, s->normal.weight));
   PetscCall(PetscFree(*sphere));

@@ -43,6 +43,7 @@ struct _p_Sphere {
   SphereTable fine;   /* degree 2p, with derivatives: bending, area */
   TurnedGrids turned; /* degree 3p/2, poles at the points of `shape` */
   TurnedGrids normal; /* the same points with harmonics of degree 2p; made when first used */
+  SphereTable twice;  /* harmonics of degree 2p on the grid of degree 2p, made with it */
 };
 
 /* SphereCreate - the tables of degree p >= 2. Not collective. */

@@ -82,7 +82,6 @@ static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt la
 /* Coefficients of degree 2p of n dA/domega, a polynomial of that degree. */
 static PetscErrorCode LayerNormals(Sphere s, const PetscReal c[], PetscReal m[]) {
   const PetscInt n = s->fine.grid.n;
-  SphereTable table;
   PetscReal *T, *P, *a;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(3 * n, &T, 3 * n, &P, 3 * n, &a));
@@ -93,9 +92,7 @@ static PetscErrorCode LayerNormals(Sphere s, const PetscReal c[], PetscReal m[])
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(s->fine.grid.theta[i]);
     }
-  PetscCall(SphereTableCreate(2 * s->p, 2 * s->p, 1, &table));
-  PetscCall(SphereTableProject(&table, HarmonicsCount(2 * s->p), 3, a, m));
-  PetscCall(SphereTableDestroy(&table));
+  PetscCall(SphereTableProject(&s->twice, HarmonicsCount(2 * s->p), 3, a, m));
   PetscCall(PetscFree3(T, P, a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
