@@ -107,17 +107,16 @@ def fill(results: Results) -> Values:
             f"{shape(one)}, {one['height']:+.2f}, {one['lag']:.3f}" if "failed" not in one else "stopped"
             for one in ones
         ]
-        rows.append(f"| {strength:g} | {' | '.join(cells)} |")
+        rows.append([strength, *cells])
     snakes = {(key[0], key[1][0]): results.get(along(key[0], *key[1])) for key in ALONG}
     snaking = []
     for strength in sorted({key[0] for key in snakes}):
         cells = [swing(one, strength * 0.1) for (other, _), one in snakes.items() if other == strength]
-        snaking.append(f"| {strength:g} | {' | '.join(cells)} |")
-    lag = {name: f"{runs[strength, 5.0]['lag']:.3f}" for name, strength in (("slipper_lag", 10), ("parachute_lag", 40))}
-    return lag | {
-        "capillary_rows": "\n".join(rows),
-        "snaking_rows": "\n".join(snaking),
-        "capillary_seconds": seconds(*runs.values(), *snakes.values()),
+        snaking.append([strength, *cells])
+    return {
+        "capillaries": [["Ca", *(f"height {height:.3g}" for height in HEIGHTS)], *rows],
+        "snaking": [["Ca", *dict.fromkeys(f"height {height:.3g}" for _, height in snakes)], *snaking],
+        "seconds": seconds(*runs.values(), *snakes.values()),
     }
 
 

@@ -73,10 +73,9 @@ def fill(results: Results) -> Values:
         for law, exact in EXACT.items():
             own, other = found[law, number]["D"], exact.get(number)
             cells.append(f"{own:.5f}" + (f" ({other:.5f})" if other else ""))
-        rows.append(
-            f"| {number:g} | {' | '.join(cells)} | {small(number):.5f} | {found['hooke', number]['angle']:.5f} pi |"
-        )
-    return {"capsule_rows": "\n".join(rows), "capsule_seconds": seconds(*found.values())}
+        rows.append([number, *cells, f"{small(number):.5f}", f"{found['hooke', number]['angle']:.5f} pi"])
+    header = ["Ca", *(law.replace("_", "-") for law in EXACT), "closed form", "angle"]
+    return {"capsules": [header, *rows], "seconds": seconds(*found.values())}
 
 
 SCENE = Scene("capsule", fill)

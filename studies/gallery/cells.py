@@ -69,17 +69,17 @@ def cells(perimeter: float, fraction: float, picture: Path | None = None) -> Cas
 
 def fill(results: Results) -> Values:
     """Make the runs; return the values."""
-    rows = []
+    rows, runs = [], []
     for perimeter, published in PUBLISHED.items():
         few = results.get(cells(perimeter, 0.05))
         drawn = [results.path.parent / DRAWN[perimeter]] if perimeter in DRAWN else []
         many = with_pictures(results, cells(perimeter, 0.2, *drawn), *(path.name for path in drawn))
-        values = " | ".join(f"{one['viscosity']:.3f} +- {one['deviation']:.3f}" for one in (few, many))
+        values = [f"{one['viscosity']:.3f} +- {one['deviation']:.3f}" for one in (few, many)]
         ratio = many["viscosity"] / few["viscosity"]
-        rows.append(
-            f"| {perimeter:g} | {values} | {ratio:.3f} | {published} | {many['its']:.1f} | {seconds(few, many)} |"
-        )
-    return {"cells_rows": "\n".join(rows)}
+        rows.append([perimeter, *values, f"{ratio:.3f}", published, f"{many['its']:.1f}"])
+        runs += [few, many]
+    header = ["perimeter", "fraction 0.05", "fraction 0.2", "ratio", "published", "iterations"]
+    return {"red_cells": [header, *rows], "seconds": seconds(*runs)}
 
 
 SCENE = Scene("cells", fill, long=True)

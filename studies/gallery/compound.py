@@ -36,23 +36,20 @@ def compound(volume: float, radius: float, step: float, pictures: Path | None = 
 
 def fill(results: Results) -> Values:
     """Make the runs; return the values."""
-    rows = []
+    rows, runs = [], []
     for volume, radii in CASES:
         for radius in radii:
             drawn = (volume, radius) == (0.9, 0.6)
             one = compound(volume, radius, 0.05, results.path.parent if drawn else None)
             found = with_pictures(results, one, "compound.png") if drawn else results.get(one)
             fine = results.get(compound(volume, radius, 0.025))
-            motion = (
-                f"tumbles | {found['half']:.2f}, {fine['half']:.2f}"
-                if found["half"]
-                else f"tank-treads at {found['angle']:.5f} pi | "
-            )
+            tumbles = f"half a turn in {found['half']:.2f}, {fine['half']:.2f}" if found["half"] else ""
+            motion = tumbles or f"tank-treads at {found['angle']:.5f} pi"
             exact = f"{EXACT[volume, radius]:.5f} pi" if (volume, radius) in EXACT else ""
-            rows.append(
-                f"| {volume} | {radius} | {motion} | {exact} | {found['gap']:.3f} | {found['its']:.1f} | {seconds(found)} |"
-            )
-    return {"compound_rows": "\n".join(rows)}
+            rows.append([volume, radius, motion, exact, f"{found['gap']:.3f}", f"{found['its']:.1f}"])
+            runs += [found, fine]
+    header = ["V", "radius", "motion", "boundary integral", "thinnest film", "iterations"]
+    return {"compounds": [header, *rows], "seconds": seconds(*runs)}
 
 
 SCENE = Scene("compound", fill)

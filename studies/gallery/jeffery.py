@@ -33,12 +33,8 @@ def ellipse(ratio: float, order: int, steps: int) -> Case:
 def fill(results: Results) -> Values:
     """Make the runs; draw the angles; return the values."""
     runs = {(r, o, n): results.get(ellipse(r, o, n)) for r in RATIOS for o in ORDERS for n in STEPS}
-    rows = [
-        f"| {r:g} | {2 * (r + 1 / r):.4g} pi | "
-        + " | ".join(f"{runs[r, o, n]['off']:.0e}" for o in ORDERS for n in STEPS)
-        + " |"
-        for r in RATIOS
-    ]
+    pairs = [(o, n) for o in ORDERS for n in STEPS]
+    rows = [[r, f"{2 * (r + 1 / r):.4g} pi", *(f"{runs[r, o, n]['off']:.0e}" for o, n in pairs)] for r in RATIOS]
     figure, (panel,) = new_figure(5, 3)
     for r in RATIOS:
         found, phase = runs[r, 2, 200], np.linspace(0, 2 * np.pi, 400)
@@ -56,7 +52,8 @@ def fill(results: Results) -> Values:
     panel.set(xlabel="strain", ylabel="angle / $\\pi$")
     panel.legend(title="a/b", frameon=False)
     save_figure(figure, results.path.parent / "jeffery.png")
-    return {"jeffery_rows": "\n".join(rows), "jeffery_seconds": seconds(*runs.values())}
+    header = ["a/b", "period", *(f"order {o}: {n} steps" for o, n in pairs)]
+    return {"orbits": [header, *rows], "seconds": seconds(*runs.values())}
 
 
 SCENE = Scene("jeffery", fill)

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from studies.common.engine import Results
+from studies.common.tables import write_csv
 from studies.gallery.bifurcation import SCENE as BIFURCATION
 from studies.gallery.capillary import SCENE as CAPILLARY
 from studies.gallery.capsule import SCENE as CAPSULE
@@ -54,7 +55,7 @@ PLACE = re.compile(r"\{(\w+)\}")
 
 
 def write(folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = SCENES) -> list[Path]:
-    """Run what is not there yet; write gallery.json and the pictures into the folder, and the page beside it.
+    """Run what is not there yet; write gallery.json, tables and pictures into the folder, and the page beside it.
 
     Quick: without the scenes that are long, which the page says.
     """
@@ -68,7 +69,11 @@ def write(folder: str | Path, quick: bool = False, scenes: tuple[Scene, ...] = S
         if quick and scene.long and not scene_is_there(results, name):
             text.append(f"{block.splitlines()[0]}\n\nLeft out by QUICK=1.\n\n")
             continue
-        text.append(filled(block.replace("FOLDER", folder.name), scene.fill(results)))
+        values = scene.fill(results)
+        for place, value in values.items():
+            if isinstance(value, list):
+                values[place] = write_csv(folder / f"{place}.csv", value[0], value[1:]).name
+        text.append(filled(block.replace("FOLDER", folder.name), values))
     page = folder.with_suffix(".md")
     page.write_text("".join(text).rstrip() + "\n")
     return [page, results.path, *sorted(path for path in folder.iterdir() if path.suffix in (".png", ".gif", ".mp4"))]

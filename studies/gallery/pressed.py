@@ -49,10 +49,6 @@ def slope(value: list[float], first: int) -> float:
 def fill(results: Results) -> Values:
     """Make the runs; return the values."""
     coarse, fine = (results.get(pressed(*grid)) for grid in GRIDS)
-    rows = [
-        f"| {t} | {coarse['rim'][k]:.5f} | {fine['rim'][k]:.5f} | {coarse['centre'][k]:.5f} | {fine['centre'][k]:.5f} |"
-        for k, t in enumerate(TIMES)
-    ]
     figure, (panel,) = new_figure(8, 5)
     for name, style in (("rim", "o-"), ("centre", "s-")):
         panel.loglog(TIMES, fine[name], style, ms=4, lw=1.2, label=name)
@@ -65,12 +61,10 @@ def fill(results: Results) -> Values:
     save_figure(figure, results.path.parent / "pressed.png")
     apart = max(abs(coarse["rim"][k] / fine["rim"][k] - 1) for k in range(len(TIMES)))
     return {
-        "pressed_rows": "\n".join(rows),
         "pressed_apart": f"{100 * apart:.1f}",
         "rim_late": f"{slope(fine['rim'], 2):.2f}",
         "centre_late": f"{slope(fine['centre'], 2):.2f}",
-        "power_ratio": f"{slope(fine['rim'], 2) / slope(fine['centre'], 2):.2f}",
-        "pressed_seconds": f"{seconds(coarse)} and {seconds(fine)}",
+        "seconds": seconds(coarse, fine),
     }
 
 

@@ -19,8 +19,11 @@ from studies.common.scenes import option_file, words
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Values = dict[str, str]
-"""What the template's places are filled with, by their names."""
+Table = list[list[object]]
+"""The header and the rows of a CSV file."""
+
+Values = dict[str, str | Table]
+"""What the template's places are filled with, by their names: texts, and the names of tables' files."""
 
 
 @dataclass(frozen=True)

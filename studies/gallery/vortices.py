@@ -14,8 +14,8 @@ import numpy as np
 
 from petves.run import Run, RunError, read_series
 from studies.common.engine import Results, cpu_seconds
-from studies.common.scenes import RUNS, option_file, option_text, words
-from studies.gallery.scene import Scene, Values, film, least, moments
+from studies.common.scenes import RUNS, option_file, words
+from studies.gallery.scene import Scene, Values, film, moments, seconds
 
 
 def vortices(x: np.ndarray, y: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
@@ -33,20 +33,12 @@ def main(file: str, folder: str, *options: str) -> None:
         print(sim.run())
 
 
-def made(results: Results, file: str, changes: str, pictures: tuple[str, ...], draw) -> dict:
-    """Return the measures of a run: energies, gap, worst errors of area and length; `draw(folder)` makes its pictures."""
-    options = option_file(f"gallery/{file}") | words(changes)
+def made(results: Results, file: str, pictures: tuple[str, ...], draw) -> dict:
+    """Return the measures of a run: worst errors of area and length, places at the end; `draw(folder)` makes its pictures."""
 
     def measure() -> dict[str, object]:
         with tempfile.TemporaryDirectory() as name:
-            command = [
-                sys.executable,
-                "-m",
-                "studies.gallery.vortices",
-                file,
-                name,
-                *option_text(words(changes)).split(),
-            ]
+            command = [sys.executable, "-m", "studies.gallery.vortices", file, name]
             before = cpu_seconds()
             done = subprocess.run(command, capture_output=True, text=True)
             if done.returncode:
@@ -55,25 +47,19 @@ def made(results: Results, file: str, changes: str, pictures: tuple[str, ...], d
             draw(Path(name))
             return measures(Path(name)) | {"cpu_seconds": spent}
 
-    name = f"{file}_{changes.replace(' ', '_')}" if changes else file
     if not all((results.path.parent / picture).is_file() for picture in pictures):
-        results.entries.pop(name, None)
-    return results.derive(name, options, measure)
+        results.entries.pop(file, None)
+    return results.derive(file, option_file(f"gallery/{file}"), measure)
 
 
 def measures(folder: Path) -> dict[str, object]:
     """Return what is kept of a run."""
     series = read_series(folder / "series.csv")
-    gap, time = least(series)
     run = Run.read(folder)
     middle = np.array([run.markers[-1, a:b].mean(axis=0) for a, b in zip(run.start, run.start[1:])])
-    energy = series["energy_bending"]
     return {
         "area": np.abs(series["area_error"]).max(),
         "length": np.abs(series["length_error"]).max(),
-        "gap": gap,
-        "gap_time": time,
-        "energy": [energy[0], energy.max(), energy[-1]],
         "middle": np.round(middle, 6).tolist(),
     }
 
@@ -102,22 +88,13 @@ def fill(results: Results) -> Values:
         moments(folder, home / "lattice.png", (0, 0.6, 1.2, 2), rows=2, width=10)
         film(folder, home / "lattice.gif", width=560)
 
-    four = made(results, "vortex", "", ("vortex.png",), draw_vortex)
-    coarse = made(results, "vortex", "-domain_cells 32,32", (), lambda folder: None)
-    many = made(results, "lattice", "", ("lattice.png", "lattice.gif"), draw_lattice)
-    apart = np.abs(np.array(four["middle"]) - np.array(coarse["middle"])).max()
+    four = made(results, "vortex", ("vortex.png",), draw_vortex)
+    many = made(results, "lattice", ("lattice.png", "lattice.gif"), draw_lattice)
     return {
         "vortex_turned": f"{turned(four['middle']):.0e}",
-        "vortex_apart": f"{apart:.0e}",
-        "vortex_errors": f"{four['area']:.0e}, {four['length']:.0e}",
-        "vortex_energy": ", ".join(f"{value:.4f}" for value in (four["energy"][0], four["energy"][2])),
-        "vortex_gap": f"{four['gap']:.3f}",
         "lattice_shifted": f"{shifted(many['middle']):.0e}",
         "lattice_errors": f"{many['area']:.0e}, {many['length']:.0e}",
-        "lattice_energy": ", ".join(f"{value:.3f}" for value in many["energy"]),
-        "lattice_gap": f"{many['gap']:.3f}",
-        "vortex_seconds": f"{four['cpu_seconds']:.0f}",
-        "lattice_seconds": f"{many['cpu_seconds']:.0f}",
+        "seconds": seconds(four, many),
     }
 
 
