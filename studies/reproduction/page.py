@@ -89,17 +89,14 @@ def _head(quick: bool, ranks: int, name: str) -> str:
     return (
         "# The paper's scenes, tables and figures, repeated\n\n"
         "The scenes of Ong and Lai, J. Comput. Phys. 408 (2020) 109277, run by two methods: for those who know the paper and want to see\n"
-        "which of its numbers hold, and what they cost. This page has sections 5.4 to 5.6; the others have pages of their own.\n\n"
+        "which of its numbers hold, and what they cost.\n\n"
         "- *The paper's method* is `-scheme_type split`: kernel ib6, backward Euler, unsteady Stokes flow, PCILU with 200 levels in nested\n"
         "  dissection.\n"
         "- *The default* of petves is what the files of runs/ say: coupled, order 3, near field.\n\n"
-        "| more | what |\n"
-        "|---|---|\n"
-        f"| [sections 5.1 to 5.3]({name}/tables.md) | Tables 1 to 8, Figures 2 to 5 |\n"
-        f"| [the coupled scheme]({name}/coupled.md) | with the paper's membrane: energy, error in time, iterations, start |\n"
-        f"| [iterations of the tension solve]({name}/tension.md) | fills, orderings and stopping tests of split |\n\n"
-        "h is the side of a cell, V the reduced area, R0 the size, E_B the bending energy; [the glossary](glossary.md) defines these and other\n"
-        "words. none, unsteady and convective are the [models of inertia](fluid.md#inertia-of-the-fluid).\n\n"
+        f"This page has sections 5.4 to 5.6. Others have [sections 5.1 to 5.3]({name}/tables.md), [the coupled scheme with the paper's\n"
+        f"membrane]({name}/coupled.md), and [iterations of the tension solve]({name}/tension.md) of split.\n\n"
+        "h is the side of a cell, V the reduced area, R0 the size, E_B the bending energy ([glossary](glossary.md)). none, unsteady and\n"
+        "convective are the [models of inertia](fluid.md#inertia-of-the-fluid).\n\n"
         f"`{command}` writes the page, with split on {ranks} ranks and the default on one. {name}/results.json has every run's options and commit.\n"
     )
 
