@@ -1,57 +1,61 @@
 /* Questions about a simulation, and calls from programs that handle errors themselves (Python). */
 #include "app/simulation.h"
-#include "output/cells.h"
+#include "plane/cells.h"
+#include "plane/gathered.h"
 #include "scheme/fields.h"
 #include <locale.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Stop where a question is one of the plane alone. */
-static PetscErrorCode CheckPlane(Simulation s) {
+/* The plane, of which alone some questions are; stops in another kind of simulation. */
+static PetscErrorCode AskPlane(Simulation s, Plane *plane) {
   PetscFunctionBeginUser;
-  PetvesCheck(!s->space, s->scene->comm, "-dim 3: not from Python or C; allowed: 2, or petves run");
+  *plane = PlaneOf(&s->model);
+  PetvesCheck(*plane, s->scene->comm, "-dim 3: not from Python or C; allowed: 2, or petves run");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetTime(Simulation s, PetscInt *step, PetscReal *time) {
   PetscFunctionBeginUser;
-  if (step) *step = s->space ? s->space->state.step : s->scheme->state.step;
-  if (time) *time = s->space ? s->space->state.t : s->scheme->state.t;
+  if (step) *step = *s->model.step;
+  if (time) *time = *s->model.t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec *X, Vec *U) {
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
-  if (w || p) PetscCall(SchemeFields(s->scheme));
-  if (w) *w = s->scheme->state.w;
-  if (p) *p = s->scheme->state.p;
-  if (sigma) *sigma = s->scheme->state.sigma;
-  if (X) *X = s->scheme->state.X;
-  if (U) *U = s->scheme->state.U;
+  PetscCall(AskPlane(s, &plane));
+  if (w || p) PetscCall(SchemeFields(plane->scheme));
+  if (w) *w = plane->scheme->state.w;
+  if (p) *p = plane->scheme->state.p;
+  if (sigma) *sigma = plane->scheme->state.sigma;
+  if (X) *X = plane->scheme->state.X;
+  if (U) *U = plane->scheme->state.U;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, const PetscReal **velocity,
                                        const PetscReal **tension) {
   const PetscReal **const wanted[] = {markers, velocity, tension}; /* STATE_MARKERS, STATE_VELOCITY, STATE_TENSION */
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
+  PetscCall(AskPlane(s, &plane));
   for (int k = 0; k < 3; k++) {
-    const StatePart part = StatePartOf(s->scheme, &s->scheme->state, (StatePartName)k);
+    const StatePart part = StatePartOf(plane->scheme, &plane->scheme->state, (StatePartName)k);
     if (!wanted[k]) continue;
     if (!s->gathered[k]) PetscCall(PetscMalloc1(part.n * part.each, &s->gathered[k]));
-    PetscCall(StateShow(s->scheme, (StatePartName)k, s->gathered[k]));
+    PetscCall(StateShow(plane->scheme, (StatePartName)k, s->gathered[k]));
     *wanted[k] = s->gathered[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* PETSc objects by name. A name that this simulation has no object for gives NULL. */
-static PetscObject FindObject(Simulation s, const char name[]) {
-  const State *q = &s->scheme->state;
-  const Fluid f = s->fluid;
-  const Coupling c = s->coupling;
+static PetscObject FindObject(Plane plane, const char name[]) {
+  const State *q = &plane->scheme->state;
+  const Fluid f = plane->fluid;
+  const Coupling c = plane->coupling;
   const PetscBool any = CouplingHasMembrane(c);
   const struct {
     const char *name;
@@ -80,20 +84,22 @@ static PetscObject FindObject(Simulation s, const char name[]) {
 }
 
 PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject *object) {
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
-  if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(s->scheme));
-  *object = FindObject(s, name);
-  if (!*object) PetscCall(SchemeGetKSP(s->scheme, name, (KSP *)object));
+  PetscCall(AskPlane(s, &plane));
+  if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(plane->scheme));
+  *object = FindObject(plane, name);
+  if (!*object) PetscCall(SchemeGetKSP(plane->scheme, name, (KSP *)object));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt start[], PetscInt sizes[7]) {
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
-  const Grid g = s->fluid->grid;
-  *vesicles = s->layout->bodies;
-  for (PetscInt v = 0; start && v <= s->layout->bodies; v++) start[v] = s->layout->start[v];
+  PetscCall(AskPlane(s, &plane));
+  const Grid g = plane->fluid->grid;
+  *vesicles = plane->layout->bodies;
+  for (PetscInt v = 0; start && v <= plane->layout->bodies; v++) start[v] = plane->layout->start[v];
   sizes[0] = g->first;
   for (int f = FIELD_U; f <= FIELD_P; f++) {
     sizes[1 + 2 * f] = g->rows[f];
@@ -103,12 +109,13 @@ PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt sta
 }
 
 PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscInt start[], PetscReal markers[]) {
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
-  const Obstacles o = s->coupling->bodies->obstacles;
+  PetscCall(AskPlane(s, &plane));
+  const Obstacles o = plane->coupling->bodies->obstacles;
   *obstacles = o ? o->layout->bodies : 0;
   for (PetscInt v = 0; start && v <= *obstacles; v++) start[v] = o ? o->layout->start[v] : 0;
-  if (o && markers) ObstaclesCurves(o, StateInstant(&s->scheme->state), markers);
+  if (o && markers) ObstaclesCurves(o, StateInstant(&plane->scheme->state), markers);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,31 +129,33 @@ PetscErrorCode SimulationGetOption(Simulation s, PetscInt i, const char **name, 
 
 PetscErrorCode SimulationGetColumn(Simulation s, PetscInt i, const char **name) {
   PetscFunctionBeginUser;
-  *name = i >= 0 && i < COLUMN_COUNT ? SeriesColumns[i] : NULL;
+  *name = i >= 0 && i < s->model.columns.columns ? s->model.columns.column[i].name : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetRow(Simulation s, PetscInt vesicle, PetscReal row[]) {
-  PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
   const Record *record = &s->output->record;
-  PetscCheck(vesicle >= -1 && vesicle < s->layout->bodies, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle, s->layout->bodies - 1);
-  PetscCall(PetscArraycpy(row, vesicle < 0 ? record->last : record->each + vesicle * COLUMN_COUNT, COLUMN_COUNT));
+  const PetscInt columns = record->setting.columns, vesicles = record->setting.vesicles;
+  PetscFunctionBeginUser;
+  PetscCheck(vesicle >= -1 && vesicle < vesicles, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "vesicle %" PetscInt_FMT ": out of range; allowed: 0 to %" PetscInt_FMT, vesicle, vesicles - 1);
+  PetscCall(PetscArraycpy(row, vesicle < 0 ? record->last : record->each + vesicle * columns, columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetCellVelocity(Simulation s, PetscReal u[], PetscReal v[]) {
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
-  PetscCall(CellFields(s->scheme, u, v, NULL));
+  PetscCall(AskPlane(s, &plane));
+  PetscCall(CellFields(plane->scheme, u, v, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetCellPressure(Simulation s, PetscReal p[]) {
+  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(CheckPlane(s));
-  PetscCall(CellFields(s->scheme, NULL, NULL, p));
+  PetscCall(AskPlane(s, &plane));
+  PetscCall(CellFields(plane->scheme, NULL, NULL, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,20 +167,13 @@ PetscErrorCode SimulationGetReason(Simulation s, const char **reason) {
 
 PetscErrorCode SimulationCheckpoint(Simulation s) {
   PetscFunctionBeginUser;
-  PetscCall(s->space ? SpaceCheckpoint(s->space_output) : OutputCheckpoint(s->output));
+  PetscCall(OutputCheckpoint(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetWarning(Simulation s, PetscInt i, const char **text) {
-  const PetscInt own = *s->scene->warning ? 1 : 0;
   PetscFunctionBeginUser;
-  *text = NULL;
-  if (s->space) PetscFunctionReturn(PETSC_SUCCESS);
-  const Warnings *warnings = &s->scheme->warnings;
-  if (i >= 0 && i < own)
-    *text = s->scene->warning;
-  else if (i >= own && i < own + warnings->n)
-    *text = warnings->text[i - own];
+  *text = s->model.ops.warning(s->model.context, i);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,8 +1,7 @@
 /* A whole run: build everything from the options, step, write. */
 #include "app/simulation.h"
-#include "baselines/baselines.h"
 #include "options/typed.h"
-#include "space/fromscene.h"
+#include "space/spacemodel.h"
 #include <stdlib.h>
 
 static const char help[] = "petves: vesicles and capsules in viscous flow.\n"
@@ -81,65 +80,6 @@ PetscErrorCode PetvesReadOptions(MPI_Comm comm, PetscOptions options, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateCoupling(Scene scene, Simulation s) {
-  const PetscInt vesicles = scene->shape.vesicles;
-  CouplingSetting setting = {.mobility = {.kernel = scene->coupling.kernel,
-                                          .near = (NearFieldType)scene->coupling.near_field,
-                                          .spec = &scene->fluid,
-                                          .box_part = SceneHasBoxPart(scene),
-                                          .lag = scene->fluid.inertia == INERTIA_UNSTEADY,
-                                          .solver = !SceneIsProjection(scene)},
-                             .area_target = SceneHasAreaTarget(scene),
-                             .scene = scene};
-  PetscReal *ratio;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(vesicles, &ratio));
-  if (SceneHasContrast(scene)) setting.mobility.ratio = ratio;
-  for (PetscInt v = 0; v < vesicles && setting.mobility.ratio; v++) ratio[v] = SceneViscosityRatio(scene, v);
-  PetscCall(CouplingCreate(s->fluid, s->membrane, s->obstacles, &setting, &s->coupling));
-  PetscCall(PetscFree(ratio));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which rank has which vesicles and obstacles. */
-static PetscErrorCode CreateLayouts(MPI_Comm comm, Scene scene, Simulation s) {
-  const Shape *vesicles = &scene->shape, *solid = &scene->obstacles.outline;
-  const PetscInt n = vesicles->vesicles, all = n + solid->vesicles;
-  PetscInt *start;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(all + 1, &start));
-  PetscCall(PetscArraycpy(start, vesicles->start, n + 1));
-  for (PetscInt b = 1; b <= solid->vesicles; b++) start[n + b] = start[n] + solid->start[b];
-  PetscCall(LayoutCreate(comm, all, start, NULL, &s->all));
-  PetscCall(LayoutCreatePart(s->all, 0, n, &s->layout));
-  PetscCall(PetscFree(start));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Build(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation s) {
-  Scene scene;
-  PetscFunctionBeginUser;
-  PetscCall(PetvesWarmUpBlas(comm));
-  PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
-  scene = s->scene;
-  PetscCall(SceneCheckUsed(scene));
-  if (scene->dim == DIM_SPACE) {
-    PetscCall(SpaceFromScene(scene, &s->space));
-    PetscCall(SceneCheckUnused(scene));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(SceneReport(scene));
-  PetscCall(FluidCreate(&scene->fluid, &s->fluid));
-  PetscCall(CreateLayouts(comm, scene, s));
-  PetscCall(ObstaclesCreate(scene, s->all, &s->obstacles));
-  PetscCall(MembraneCreate(s->layout, scene->shape.X, &scene->membrane, &s->membrane));
-  PetscCall(CreateCoupling(scene, s));
-  PetscCall(BaselinesRegister());
-  PetscCall(SchemeCreate(scene, s->coupling, scene->shape.X, &s->scheme));
-  PetscCall(SceneCheckUnused(scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
   PetscFunctionBeginUser;
   PetscCall(SimulationCreateWithFlow(comm, NULL, NULL, out));
@@ -147,6 +87,7 @@ PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
 }
 
 PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *out) {
+  PetscErrorCode (*const create[])(Scene, Model *) = {[DIM_PLANE] = PlaneCreate, [DIM_SPACE] = SpaceModelCreate};
   Simulation s;
   PetscBool only_help;
   PetscFunctionBeginUser;
@@ -155,11 +96,14 @@ PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ct
   StopClock(); /* where others have started PETSc: Python */
   PetscCall(PhaseBegin(PHASE_SETUP));
   PetscCall(PetvesSetupErrors(PETSC_TRUE));
-  PetscCall(Build(comm, flow, ctx, s));
+  PetscCall(PetvesWarmUpBlas(comm));
+  PetscCall(SceneCreate(comm, flow, ctx, &s->scene));
+  PetscCall(SceneCheckUsed(s->scene));
+  PetscCall(create[s->scene->dim](s->scene, &s->model));
+  PetscCall(SceneCheckUnused(s->scene));
   if (s->scene->view) PetscCall(SimulationView(s, PETSC_VIEWER_STDOUT_(comm)));
   PetscCall(PetscOptionsHasHelp(NULL, &only_help));
-  if (!only_help && s->space) PetscCall(SpaceOutputCreate(s->scene, s->space, &s->space_output));
-  if (!only_help && !s->space) PetscCall(OutputCreate(s->scene, s->scheme, &s->output)); /* -help leaves no files */
+  if (!only_help) PetscCall(OutputCreate(&s->model, &s->output)); /* -help leaves no files */
   PetscCall(PetvesSetupErrors(PETSC_FALSE));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -170,18 +114,10 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
   PetscErrorCode error;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  *simulation = NULL; /* the simulation is destroyed also when a file cannot be closed */
-  error = s->space ? SpaceOutputDestroy(&s->space_output)
-                   : OutputDestroy(&s->output); /* reported when all else is freed */
-  PetscCall(SpaceDestroy(&s->space));
+  *simulation = NULL;                /* the simulation is destroyed also when a file cannot be closed */
+  error = OutputDestroy(&s->output); /* reported when all else is freed */
   for (int k = 0; k < 3; k++) PetscCall(PetscFree(s->gathered[k]));
-  PetscCall(SchemeDestroy(&s->scheme));
-  PetscCall(CouplingDestroy(&s->coupling));
-  PetscCall(MembraneDestroy(&s->membrane));
-  PetscCall(ObstaclesDestroy(&s->obstacles));
-  PetscCall(LayoutDestroy(&s->layout));
-  PetscCall(LayoutDestroy(&s->all));
-  PetscCall(FluidDestroy(&s->fluid));
+  if (s->model.context) PetscCall(s->model.ops.destroy(s->model.context));
   PetscCall(SceneDestroy(&s->scene));
   PetscCall(PetscFree(s));
   PetscCall(error);
@@ -191,51 +127,23 @@ PetscErrorCode SimulationDestroy(Simulation *simulation) {
 PetscErrorCode SimulationView(Simulation s, PetscViewer viewer) {
   PetscFunctionBeginUser;
   PetscCall(SceneView(s->scene, viewer));
-  PetscCall(s->space ? KSPView(s->space->ksp, viewer) : SchemeView(s->scheme, viewer));
+  PetscCall(s->model.ops.view(s->model.context, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The time, and how steps are chosen. */
-static PetscReal SimulationTime(Simulation s) {
-  return s->space ? s->space->state.t : s->scheme->state.t;
-}
-
-static const StepPolicy *SimulationPolicy(Simulation s) {
-  return s->space ? &s->space->setting.policy : &s->scheme->policy;
-}
-
-/* One step, to the time `until` at most, its row of series.csv and the files that are due; still: the largest normal
-   speed of a vesicle, by the last row of the record, which every rank has. Adaptive steps end at the times of frames.
- */
-static PetscErrorCode StepInPlane(Simulation s, PetscReal until, const char **failure, PetscReal *still) {
-  const StepReport *report = &s->scheme->report;
-  const Record *r = &s->output->record;
-  PetscFunctionBeginUser;
-  PetscCall(SchemeStep(s->scheme, s->scheme->policy.adaptive ? PetscMin(until, s->output->next) : until));
-  *failure = *report->failure ? report->failure : NULL;
-  if (!*failure) PetscCall(OutputStep(s->output));
-  for (PetscInt v = 0; v < r->vesicles; v++) *still = PetscMax(*still, r->each[v * COLUMN_COUNT + COLUMN_NORMAL_SPEED]);
-  if (!r->vesicles) *still = PETSC_MAX_REAL;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode StepInSpace(Simulation s, PetscReal until, const char **failure, PetscReal *still) {
-  PetscFunctionBeginUser;
-  PetscCall(SpaceStep(s->space, until));
-  *failure = *s->space->report.failure ? s->space->report.failure : NULL;
-  if (!*failure) PetscCall(SpaceOutputStep(s->space_output));
-  *still = s->space_output->record.last[SPACE_NORMAL_SPEED];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
+/* One step, to the time `until` at most, its row of series.csv and the files that are due. Adaptive steps end at the
+   times of frames. The state is steady by the last row of the record, which every rank has. */
 static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failure) {
+  const Model *m = &s->model;
   PetscLogDouble start, end;
-  PetscReal still = 0;
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
   PetscCall(PetscTime(&start));
-  PetscCall((s->space ? StepInSpace : StepInPlane)(s, until, failure, &still));
-  s->steady = !*failure && still < s->scene->time.steady_tol;
+  PetscCall(m->ops.step(m->context, m->policy->adaptive ? PetscMin(until, s->output->next) : until));
+  *failure = *m->failure ? m->failure : NULL;
+  if (!*failure) PetscCall(OutputStep(s->output));
+  s->steady = !*failure && m->columns.vesicles &&
+              RecordNumber(&s->output->record, "normal_speed") < s->scene->time.steady_tol;
   PetscCall(PetscTime(&end));
   s->longest_step = PetscMax(s->longest_step, end - start);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -244,34 +152,35 @@ static PetscErrorCode TakeStep(Simulation s, PetscReal until, const char **failu
 PetscErrorCode SimulationBegin(Simulation s) {
   PetscFunctionBeginUser;
   if (s->begun) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(s->space ? SpaceStart(s->space) : SchemeStart(s->scheme));
+  PetscCall(s->model.ops.start(s->model.context));
   s->begun = PETSC_TRUE;
   s->reason = "finished";
-  PetscCall(s->space ? SpaceOutputBegin(s->space_output) : OutputBegin(s->output));
+  PetscCall(OutputBegin(s->output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationStep(Simulation s, const char **failure) {
+  const Model *m = &s->model;
   const PetscReal end = s->scene->time.end;
   PetscFunctionBeginUser;
-  PetscCall(TakeStep(s, StepFinished(SimulationPolicy(s), SimulationTime(s), end) ? PETSC_MAX_REAL : end, failure));
+  PetscCall(TakeStep(s, StepFinished(m->policy, *m->t, end) ? PETSC_MAX_REAL : end, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepped, const char **failure) {
+  const Model *m = &s->model;
   const char *why = NULL;
   PetscFunctionBeginUser;
   *failure = NULL;
   *stepped = PETSC_FALSE;
   PetscCall(SimulationBegin(s));
-  const PetscReal reserve = 1 + 1.5 * (s->space ? s->space_output->checkpoint_seconds : s->output->checkpoint_seconds);
+  const PetscReal reserve = 1 + 1.5 * s->output->checkpoint_seconds;
   s->reason = s->steady ? "steady" : "finished";
-  if (s->steady || StepFinished(SimulationPolicy(s), SimulationTime(s), until)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->steady || StepFinished(m->policy, *m->t, until)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StopRequested(s->scene->comm, s->scene->time.wall_limit, reserve + 1.5 * s->longest_step, &why));
   if (why) {
     s->reason = "stopped";
-    PetscCall(PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n",
-                        s->space ? s->space->state.step : s->scheme->state.step, why));
+    PetscCall(PetvesSay(s->scene->comm, "petves: stopping after step %" PetscInt_FMT ": %s\n", *m->step, why));
   } else {
     PetscCall(TakeStep(s, until, failure));
     *stepped = PETSC_TRUE;
@@ -282,7 +191,7 @@ PetscErrorCode SimulationAdvance(Simulation s, PetscReal until, PetscBool *stepp
 PetscErrorCode SimulationEnd(Simulation s, const char *failure) {
   PetscFunctionBeginUser;
   PetscCall(SimulationBegin(s));
-  PetscCall(s->space ? SpaceOutputEnd(s->space_output, s->reason, failure) : OutputEnd(s->output, s->reason, failure));
+  PetscCall(OutputEnd(s->output, s->reason, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,8 +204,7 @@ PetscErrorCode SimulationRun(Simulation s, PetscBool *good) {
   while (stepped && !failure) PetscCall(SimulationAdvance(s, s->scene->time.end, &stepped, &failure));
   PetscCall(SimulationEnd(s, failure));
   *good = failure ? PETSC_FALSE : PETSC_TRUE;
-  const Folder *folder = s->space ? &s->space_output->folder : &s->output->folder;
-  if (failure && !folder->rank)
-    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, folder->path);
+  if (failure && !s->output->folder.rank)
+    fprintf(stderr, "petves: error: %s; the last good state is in %s/checkpoint.h5\n", failure, s->output->folder.path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -39,6 +39,11 @@ typedef struct {
   AppendedSeries series[APPENDED_SERIES];
 } AppendedKind;
 
+/* AppendedAddSeries - one more series. Not collective. */
+static inline void AppendedAddSeries(AppendedKind *kind, AppendedSeries series) {
+  kind->series[kind->n++] = series;
+}
+
 typedef struct {
   Folder *folder; /* borrowed */
   AppendedKind kind;

@@ -1,8 +1,5 @@
 #include "base/version.h"
-#include "scheme/fields.h"
 #include "output/checkpoint.h"
-#include "output/gathered.h"
-#include "scheme/bdf.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,117 +17,31 @@ PetscErrorCode CheckpointEntry(H5File *file, PetscBool write, const char name[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Write or read `each` numbers in every row of a field. */
-static PetscErrorCode CheckpointRows(H5File *file, PetscBool write, const char name[], Grid g, Field field,
-                                     PetscInt each, PetscScalar values[]) {
-  const PetscInt rows = g->all_rows[field];
-  PetscScalar *all;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(g->rank ? 0 : rows * each, &all)); /* zero where nothing can be read */
-  if (write) PetscCall(GatherRows(g, field, each, values, all));
-  H5BeginEntry(file, write, name, 2, (PetscInt[]){rows, each});
-  H5Transfer(file, write, name, 0, rows * each, all);
-  if (!write) PetscCall(ScatterRows(g, field, each, all, values));
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(PETSC_SUCCESS);
+void CheckpointFinite(H5File *file, PetscInt n, const PetscReal values[]) {
+  for (PetscInt k = 0; k < n && !file->rank; k++)
+    if (PetscIsInfOrNanReal(values[k])) file->failed = PETSC_TRUE;
 }
 
-/* Write or read what a state has of the fluid: steps need neither the pressure nor, most of them, the velocity of older
-   states. */
-static PetscErrorCode CheckpointFluid(H5File *file, PetscBool write, Grid g, const char group[], const State *q) {
-  const struct {
-    const char *name;
-    Vec vector;
-    Field field;
-    PetscInt each, first; /* numbers in a row; where the field begins in the local array */
-  } all[] = {{"u", q->w, FIELD_U, g->columns[FIELD_U], 0},
-             {"v", q->w, FIELD_V, g->columns[FIELD_V], GridLocalU(g)},
-             {"p", q->p, FIELD_P, g->columns[FIELD_P], 0},
-             {"flow", q->flow, FIELD_U, StateFlowWidth(q, g), 0}};
+PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, PetscInt numbers, const CheckpointNumber number[]) {
   PetscFunctionBeginUser;
-  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
-    PetscScalar *a;
-    char name[64];
-    if (!all[k].vector) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/fluid/%s", group, all[k].name));
-    PetscCall(VecGetArray(all[k].vector, &a));
-    PetscCall(CheckpointRows(file, write, name, g, all[k].field, all[k].each, a + all[k].first));
-    PetscCall(VecRestoreArray(all[k].vector, &a));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CheckpointVectors(H5File *file, PetscBool write, Scheme s, PetscInt j, State *q) {
-  static const char *const groups[] = {"", "/previous", "/previous_1", "/previous_2", "/previous_3", "/previous_4"};
-  PetscFunctionBeginUser;
-  PetscCall(CheckpointFluid(file, write, s->fluid->grid, groups[j], q));
-  for (int k = 0; k < STATE_PARTS; k++) {
-    const StatePart part = StatePartOf(s, q, (StatePartName)k);
-    PetscReal *values;
-    char name[64];
-    if (!part.n) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", groups[j], part.name));
-    PetscCall(PetscCalloc1(part.n * part.each, &values));
-    if (write) PetscCall(StateGather(&part, values));
-    PetscCall(CheckpointEntry(file, write, name, part.n, part.each, values));
-    if (!write) PetscCall(StateScatter(&part, values));
-    PetscCall(PetscFree(values));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CheckpointTracers(H5File *file, PetscBool write, Scheme s, Tracers *t) {
-  PetscFunctionBeginUser;
-  PetscCall(CheckpointEntry(file, write, "/tracers/points", t->n, 2, t->X));
-  PetscCall(CheckpointEntry(file, write, "/tracers/velocity", t->n, 2, t->U));
-  for (PetscInt k = 0; k < 2 * t->n; k++)
-    if (PetscIsInfOrNanReal(t->X[k]) || PetscIsInfOrNanReal(t->U[k])) file->failed = PETSC_TRUE;
-  t->t = s->state.t;
-  t->moving = s->state.step > 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, CheckpointNumbers *n) {
-  SchemeTimes *times = &n->times;
-  const struct {
-    const char *name;
-    PetscReal least, most; /* allowed; most 0: all */
-    PetscInt *whole;
-    PetscReal *real;
-    PetscInt count; /* 0: one number */
-  } all[] = {{"step", 0, 1e9, &times->step},
-             {"past", 0, SCHEME_PAST, &times->past},
-             {"step_level", -1000, 1000, &times->plan.level},
-             {"frames", 0, 1e9, &n->frames},
-             {"time", 0, 1e300, NULL, &times->t},
-             {"dt", 0, 1e300, NULL, &times->dt},
-             {"dt_last", 0, 1e300, NULL, &times->dt_last},
-             {"step_order", 1, BDF_MOST, &times->plan.order},
-             {"step_guess", 1, BDF_STATES, &times->plan.guess},
-             {"totals", 0, 0, n->totals, NULL, 4},
-             {"dt_earlier", 0, 0, NULL, times->dt_earlier, SCHEME_PAST}};
-  PetscFunctionBeginUser;
-  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
-    const PetscInt count = PetscMax(1, all[k].count);
-    const hid_t type = all[k].whole ? H5_INT : H5_REAL;
-    void *const values = all[k].whole ? (void *)all[k].whole : (void *)all[k].real;
+  for (const CheckpointNumber *n = number; n < number + numbers; n++) {
+    const PetscInt count = PetscMax(1, n->count);
+    const hid_t type = n->whole ? H5_INT : H5_REAL;
+    void *const values = n->whole ? (void *)n->whole : (void *)n->real;
     if (write)
-      H5Put(file, all[k].name, type, count, values);
+      H5Put(file, n->name, type, count, values);
     else
-      PetscCall(H5Get(file, all[k].name, type, count, values));
-    const PetscReal value = all[k].whole ? *all[k].whole : *all[k].real;
-    PetvesCheck(write || all[k].most == 0 || (value >= all[k].least && value <= all[k].most), file->comm,
-                "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", file->path, all[k].name,
-                (double)value, (double)all[k].least, (double)all[k].most);
+      PetscCall(H5Get(file, n->name, type, count, values));
+    const PetscReal value = n->whole ? *n->whole : *n->real;
+    PetvesCheck(write || n->most == 0 || (value >= n->least && value <= n->most), file->comm,
+                "-restart %s: its %s is %g; allowed: %g to %g, as petves writes it", file->path, n->name, (double)value,
+                (double)n->least, (double)n->most);
   }
-  PetvesCheck(write || (n->frames <= times->step + 1 && (times->step == 0 || times->dt_last > 0)), file->comm,
-              "-restart %s: it has %g frames and a last step of %g at step %g; allowed: a checkpoint.h5 of petves",
-              file->path, (double)n->frames, (double)times->dt_last, (double)times->step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Write the scene's options and the digests of its files, by which a restart knows the scene, and the vesicles. */
-PetscErrorCode CheckpointPutScene(H5File *file, Scene scene) {
+/* Write the scene's options, by which a restart knows the scene. */
+static PetscErrorCode CheckpointPutScene(H5File *file, Scene scene) {
   const PetscInt format = CHECKPOINT_FORMAT;
   PetscFunctionBeginUser;
   H5Put(file, "format", H5_INT, 1, &format);
@@ -141,22 +52,6 @@ PetscErrorCode CheckpointPutScene(H5File *file, Scene scene) {
     H5PutText(file, SceneOptionRow(i)->name, value);
     PetscCall(PetscFree(value));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CheckpointWriteScene(Scheme s, H5File *file) {
-  const Membrane m = s->membrane;
-  const Layout l = m->layout;
-  PetscFunctionBeginUser;
-  PetscCall(CheckpointPutScene(file, s->scene));
-  H5PutText(file, "vesicle_digest", s->scene->shape.digest);
-  H5PutText(file, "obstacle_digest", s->scene->obstacles.outline.digest);
-  if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
-  H5Put(file, "vesicles", H5_INT, 1, &l->bodies);
-  H5Put(file, "vesicle_start", H5_INT, l->bodies + 1, l->start);
-  H5Put(file, "vesicle_ds", H5_REAL, l->bodies, m->ds);
-  H5Put(file, "vesicle_area", H5_REAL, l->bodies, m->A0);
-  H5Put(file, "vesicle_length", H5_REAL, l->bodies, m->L0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,7 +117,7 @@ static PetscBool CheckpointRotate(const Checkpoint *c, const char temporary[]) {
 }
 
 /* k, if the file is the k-th newest checkpoint, as its inode tells; CHECKPOINT_NAMES when it is none of them. */
-static PetscInt CheckpointNumber(Folder *folder, const char file[]) {
+static PetscInt CheckpointPlace(Folder *folder, const char file[]) {
   char path[PETSC_MAX_PATH_LEN];
   struct stat chosen, other;
   for (PetscInt k = 0; k < CHECKPOINT_NAMES && !stat(file, &chosen); k++) {
@@ -239,7 +134,7 @@ PetscErrorCode CheckpointAdopt(const Checkpoint *c, const char restart[]) {
   PetscFunctionBeginUser;
   FolderPath(c->folder, CHECKPOINT_TEMPORARY, temporary);
   CheckpointPath(c->folder, 0, newest);
-  if (!c->folder->rank) k = CheckpointNumber(c->folder, restart);
+  if (!c->folder->rank) k = CheckpointPlace(c->folder, restart);
   if (k && k < CHECKPOINT_NAMES) {
     (void)unlink(temporary);
     if (link(restart, temporary) || rename(temporary, newest)) /* without links the file loses its old name */
@@ -261,43 +156,7 @@ void CheckpointClear(Folder *folder) {
   }
 }
 
-/* What a checkpoint is written from. */
-typedef struct {
-  Scheme scheme;
-  const Record *record;
-  Tracers *tracers;
-  PetscInt frames;
-} CheckpointContent;
-
-/* Write all of a checkpoint into the open file. /solver is what the solvers have kept from earlier steps. */
-static PetscErrorCode CheckpointWriteAll(void *context, H5File *file) {
-  const CheckpointContent *content = context;
-  const Scheme s = content->scheme;
-  const Record *r = content->record;
-  const PetscInt numbers = SchemeMemorySize(s);
-  const State *q = &s->state;
-  CheckpointNumbers n = {.times = {.step = q->step, .past = s->past, .t = q->t, .dt = q->dt, .dt_last = q->dt_last},
-                         .frames = content->frames,
-                         .totals = {r->solves, r->tension, r->bending, r->coupled}};
-  PetscReal *memory;
-  PetscFunctionBeginUser;
-  n.times.plan = (StepPlan){
-      .level = s->policy.adaptive ? s->plan.level : 0, .order = s->plan.order, .guess = s->plan.guess};
-  for (PetscInt j = 0; j < s->past; j++) n.times.dt_earlier[j] = s->old[j].dt_last;
-  PetscCall(CheckpointMoveNumbers(file, PETSC_TRUE, &n));
-  H5PutText(file, "series_row", r->text);
-  PetscCall(CheckpointWriteScene(s, file));
-  PetscCall(CheckpointVectors(file, PETSC_TRUE, s, 0, &s->state));
-  for (PetscInt j = 0; j < s->past; j++) PetscCall(CheckpointVectors(file, PETSC_TRUE, s, j + 1, &s->old[j]));
-  PetscCall(CheckpointTracers(file, PETSC_TRUE, s, content->tracers));
-  PetscCall(PetscMalloc1(numbers, &memory));
-  PetscCall(SchemeRemember(s, memory));
-  PetscCall(CheckpointEntry(file, PETSC_TRUE, "/solver", numbers, 1, memory));
-  PetscCall(PetscFree(memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CheckpointStore(Checkpoint *c, PetscInt step, PetscErrorCode (*write)(void *, H5File *), void *context) {
+PetscErrorCode CheckpointWrite(Checkpoint *c, const Model *m, const char row[], PetscInt frames) {
   char path[PETSC_MAX_PATH_LEN];
   H5File file;
   PetscBool done = PETSC_TRUE;
@@ -305,24 +164,18 @@ PetscErrorCode CheckpointStore(Checkpoint *c, PetscInt step, PetscErrorCode (*wr
   PetscFunctionBeginUser;
   FolderPath(c->folder, CHECKPOINT_TEMPORARY, path);
   PetscCall(H5FileOpen(c->folder->comm, path, H5_NEW, &file));
-  PetscCall(write(context, &file));
+  error = CheckpointPutScene(&file, m->scene);
+  H5PutText(&file, "series_row", row);
+  if (!error) error = m->ops.checkpoint(m->context, &file, PETSC_TRUE, &frames);
   H5FileClose(&file);
   if (!c->folder->rank) done = !file.failed && ChecksumAppend(path) && !FileSync(path);
-  error = FolderCheckOwn(c->folder); /* once more: writing took time */
+  if (!error) error = FolderCheckOwn(c->folder); /* once more: writing took time */
   if (!c->folder->rank) {
     if (done && !error) done = CheckpointRotate(c, path);
     if (!done || error) (void)unlink(path);
   }
   PetscCall(error);
   PetscCall(FolderCheck(c->folder, done, "checkpoint.h5"));
-  c->step = step;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CheckpointWrite(Checkpoint *c, Scheme s, const Record *record, Tracers *tracers, PetscInt frames) {
-  CheckpointContent content = {.scheme = s, .record = record, .tracers = tracers, .frames = frames};
-  PetscFunctionBeginUser;
-  PetscCall(SchemeFields(s));
-  PetscCall(CheckpointStore(c, s->state.step, CheckpointWriteAll, &content));
+  c->step = *m->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,7 @@
    cannot write. And where values were last read is noted (H5LastRead), by which the places of entries in a file are
    known. */
 #pragma once
-#include "fluid/grid/grid.h"
+#include "base/base.h"
 #include <hdf5.h>
 
 typedef struct {

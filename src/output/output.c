@@ -2,52 +2,65 @@
 
 /* The first multiple of -output_every after the present time. */
 static PetscReal OutputNextTime(Output o) {
-  const State *q = &o->scheme->state;
-  const PetscReal every = o->scene->output.every;
-  return StepDecimal(every * (PetscFloorReal((q->t + 1e-9 * q->dt) / every) + 1));
+  const Model *m = o->model;
+  const PetscReal every = m->scene->output.every;
+  return StepDecimal(every * (PetscFloorReal((*m->t + 1e-9 * *m->dt) / every) + 1));
+}
+
+/* run.h5: new, or that of an earlier run, cut to its scheduled frames. A frame that was saved only because that run
+   ended goes. */
+static PetscErrorCode OutputOpenFrames(Output o) {
+  const Model *m = o->model;
+  AppendedKind kind = {
+      .name = "run.h5", .entries = "frames", .now = *m->t, .context = m->context, .describe = m->ops.describe};
+  PetscFunctionBeginUser;
+  PetscCall(m->ops.series(m->context, &kind));
+  PetscCall(
+      AppendedOpen(&o->frames, &o->folder, &kind, o->go_on ? o->scheduled : APPENDED_NEW, m->scene->output.restart));
+  o->scheduled = o->frames.count;
+  if (o->scheduled) o->shown = o->frames.time[o->scheduled - 1];
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The files of a new run, which begin with the checkpoint's state after a restart in a new folder; or those of an
    earlier run, cut to what its checkpoint counts. Nothing of it is changed before all of it has been found good. */
-static PetscErrorCode OutputOpenFiles(Output o, PetscInt frames) {
-  const char *restart = o->scene->output.restart;
+static PetscErrorCode OutputOpenFiles(Output o) {
+  const Model *m = o->model;
+  const char *restart = m->scene->output.restart;
   static const char *const files[] = {"run.h5", "run.h5.new", "vesicles.h5", "vesicles.h5.new"};
   PetscInt rows = APPENDED_NEW;
   PetscFunctionBeginUser;
   if (o->go_on)
-    PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, o->scheme->state.step, restart, &rows));
+    PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, *m->step, restart, &rows));
   else
     PetscCall(SeriesPrepare(&o->series, &o->folder, o->record.header, o->record.text));
   FolderRemove(&o->folder, "summary.json"); /* what would be taken for this run's, as checkpoints are */
   for (int k = 0; k < 4 && !o->go_on; k++) FolderRemove(&o->folder, files[k]);
   if (!o->go_on) CheckpointClear(&o->folder);
-  PetscCall(FramesOpen(&o->frames, &o->folder, o->scheme, o->go_on ? frames : APPENDED_NEW, restart));
-  PetscCall(VesicleFileOpen(&o->vesicles, &o->folder, o->scheme, rows, restart));
-  if (o->go_on) PetscCall(XdmfWrite(&o->xdmf, &o->frames.file));
+  PetscCall(OutputOpenFrames(o));
+  PetscCall(VesicleFileOpen(&o->vesicles, &o->folder, &m->columns, *m->t, rows, restart));
+  if (o->go_on) PetscCall(XdmfWrite(&o->xdmf, &o->frames));
   PetscCall(SeriesOpen(&o->series));
   if (o->go_on) PetscCall(CheckpointAdopt(&o->checkpoint, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode OutputCreate(Scene scene, Scheme scheme, Output *out) {
+PetscErrorCode OutputCreate(const Model *model, Output *out) {
+  const Scene scene = model->scene;
   Output o;
-  PetscInt frames = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&o));
   *out = o;
-  o->scene = scene;
-  o->scheme = scheme;
-  PetscCall(RecordCreate(scheme->membrane->layout->bodies, &scene->obstacles, scheme->coupling->forces, &o->record));
-  PetscCall(TracersCreate(scene, &o->tracers));
+  o->model = model;
+  PetscCall(RecordCreate(&model->columns, &o->record));
   PetscCall(FolderOpen(scene->comm, scene->output.dir, &o->folder));
-  if (*scene->output.restart) PetscCall(RestartRead(scheme, &o->record, &o->tracers, &frames));
+  if (*scene->output.restart) PetscCall(RestartRead(model, &o->record, &o->scheduled));
   PetscCall(FolderMake(&o->folder));
   PetscCall(FolderClaim(&o->folder, scene->output.restart, scene->output.overwrite, &o->go_on));
   o->checkpoint = (Checkpoint){.folder = &o->folder, .keep = scene->output.checkpoint_keep, .step = -1};
-  o->xdmf = (Xdmf){.folder = &o->folder, .print = FramesPrintXdmf, .context = &o->frames, .file = -1};
-  o->frames.tracers = &o->tracers;
-  PetscCall(OutputOpenFiles(o, frames));
-  o->summary = (Summary){.folder = &o->folder, .scheme = scheme, .record = &o->record};
+  o->xdmf = (Xdmf){.folder = &o->folder, .print = model->ops.print, .context = model->context, .file = -1};
+  PetscCall(OutputOpenFiles(o));
+  o->summary = (Summary){.folder = &o->folder, .model = model, .record = &o->record};
   PetscCall(SummaryBegin(&o->summary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -61,11 +74,10 @@ PetscErrorCode OutputDestroy(Output *output) {
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   *output = NULL; /* the output is destroyed also when a file cannot be closed */
   good[0] = SeriesClose(&o->series);
-  PetscCall(FramesClose(&o->frames, &good[1]));
+  PetscCall(AppendedClose(&o->frames, &good[1]));
   good[2] = XdmfClose(&o->xdmf);
   PetscCall(AppendedClose(&o->vesicles, &good[3]));
   PetscCall(RecordDestroy(&o->record));
-  PetscCall(TracersDestroy(&o->tracers));
   FolderRelease(&o->folder);
   folder = o->folder;
   PetscCall(PetscFree(o));
@@ -74,26 +86,50 @@ PetscErrorCode OutputDestroy(Output *output) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The vesicles' own columns of the present state, on every rank. */
+static PetscErrorCode OutputMeasure(Output o) {
+  const Model *m = o->model;
+  PetscMPIInt size;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(m->columns.vesicles * m->columns.columns, &size));
+  PetscCall(PetscArrayzero(o->record.each, size));
+  PetscCall(m->ops.measure(m->context, o->record.each, o->record.last));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, o->record.each, size, MPIU_REAL, MPI_SUM, m->scene->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A row of the present state and the last step. */
 static PetscErrorCode OutputWriteRow(Output o) {
+  const Model *m = o->model;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
   PetscCall(FolderCheckOwn(&o->folder));
-  PetscCall(RecordTake(&o->record, o->scheme));
+  PetscCall(PetscArrayzero(o->record.last, m->columns.columns + m->columns.extras));
+  PetscCall(m->ops.row(m->context, o->record.last));
+  PetscCall(OutputMeasure(o));
+  RecordCombine(&o->record);
   SeriesWrite(&o->series, o->record.text);
-  PetscCall(VesicleFileWrite(&o->vesicles, &o->record, o->scheme->state.step, o->scheme->state.t));
+  PetscCall(VesicleFileWrite(&o->vesicles, &o->record, *m->step, *m->t));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A frame of the present state, in run.h5 and run.xmf. The rows so far go with it. */
+/* A frame of the present state, in run.h5 and run.xmf. It replaces a frame that is not scheduled, where a run goes on
+   after its end. The rows so far go with it. */
 static PetscErrorCode OutputWriteFrame(Output o, PetscBool scheduled) {
+  const Model *m = o->model;
   PetscFunctionBeginUser;
   PetscCall(PhaseBegin(PHASE_OUTPUT));
-  PetscCall(FramesWrite(&o->frames, scheduled));
+  o->frames.count = o->scheduled;
+  PetscCall(m->ops.frame(m->context, &o->frames));
+  PetscCall(AppendedFlush(&o->frames, PETSC_FALSE)); /* values before the time by which readers count them */
+  PetscCall(AppendedAdd(&o->frames, *m->t));
+  PetscCall(AppendedFlush(&o->frames, PETSC_FALSE));
+  if (scheduled) o->scheduled = o->frames.count;
+  o->shown = *m->t;
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
   PetscCall(AppendedFlush(&o->vesicles, PETSC_FALSE));
-  PetscCall(XdmfWrite(&o->xdmf, &o->frames.file));
+  PetscCall(XdmfWrite(&o->xdmf, &o->frames));
   PetscCall(PhaseEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,14 +137,14 @@ static PetscErrorCode OutputWriteFrame(Output o, PetscBool scheduled) {
 PetscErrorCode OutputCheckpoint(Output o) {
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
-  if (o->checkpoint.step == o->scheme->state.step) PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->checkpoint.step == *o->model->step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&start));
   PetscCall(PhaseBegin(PHASE_OUTPUT));
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(SeriesFlush(&o->series, PETSC_TRUE));
-  PetscCall(AppendedFlush(&o->frames.file, PETSC_TRUE));
+  PetscCall(AppendedFlush(&o->frames, PETSC_TRUE));
   PetscCall(AppendedFlush(&o->vesicles, PETSC_TRUE));
-  PetscCall(CheckpointWrite(&o->checkpoint, o->scheme, &o->record, &o->tracers, o->frames.scheduled));
+  PetscCall(CheckpointWrite(&o->checkpoint, o->model, o->record.text, o->scheduled));
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
   o->checkpoint_seconds = PetscMax(o->checkpoint_seconds, end - start);
@@ -116,40 +152,40 @@ PetscErrorCode OutputCheckpoint(Output o) {
 }
 
 PetscErrorCode OutputBegin(Output o) {
-  const State *q = &o->scheme->state;
+  const Model *m = o->model;
+  const PetscBool restarted = *m->scene->output.restart != 0;
   PetscFunctionBeginUser;
-  if (*o->scene->output.restart) /* the checkpoint's row is there already, but for its vesicles in a new folder */
-    PetscCall(RecordMeasure(&o->record, o->scheme));
+  if (restarted) /* the checkpoint's row is there already, but for its vesicles in a new folder */
+    PetscCall(OutputMeasure(o));
   else
     PetscCall(OutputWriteRow(o));
-  if (*o->scene->output.restart && !o->go_on) PetscCall(VesicleFileWrite(&o->vesicles, &o->record, q->step, q->t));
+  if (restarted && !o->go_on) PetscCall(VesicleFileWrite(&o->vesicles, &o->record, *m->step, *m->t));
   if (!o->go_on) PetscCall(OutputWriteFrame(o, PETSC_TRUE));
   o->next = OutputNextTime(o);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OutputStep(Output o) {
-  const State *q = &o->scheme->state;
-  const PetscInt every = o->scene->output.checkpoint_every;
+  const Model *m = o->model;
+  const PetscInt every = m->scene->output.checkpoint_every;
   PetscFunctionBeginUser;
-  PetscCall(TracersMove(&o->tracers, o->scheme));
   PetscCall(OutputWriteRow(o));
-  if (q->t >= o->next - 1e-9 * q->dt) {
+  if (m->ops.watch) PetscCall(m->ops.watch(m->context, o->record.last));
+  if (*m->t >= o->next - 1e-9 * *m->dt) {
     PetscCall(OutputWriteFrame(o, PETSC_TRUE));
     o->next = OutputNextTime(o);
   }
-  if (every && q->step % every == 0) PetscCall(OutputCheckpoint(o));
+  if (every && *m->step % every == 0) PetscCall(OutputCheckpoint(o));
   PetscCall(SummaryProgress(&o->summary, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OutputEnd(Output o, const char reason[], const char failure[]) {
-  const State *q = &o->scheme->state;
   PetscFunctionBeginUser;
   PetscCall(FolderCheckOwn(&o->folder));
   PetscCall(OutputCheckpoint(o)); /* first: a frame asks the flow for values, which a caller's own may not have */
-  if (q->t > o->frames.time) PetscCall(OutputWriteFrame(o, PETSC_FALSE));
+  if (*o->model->t > o->shown) PetscCall(OutputWriteFrame(o, PETSC_FALSE));
   PetscCall(SeriesFlush(&o->series, PETSC_FALSE));
-  PetscCall(SummaryEnd(&o->summary, o->frames.file.count, reason, failure));
+  PetscCall(SummaryEnd(&o->summary, o->frames.count, reason, failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

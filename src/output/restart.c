@@ -1,9 +1,7 @@
-/* -restart: a checkpoint is checked, compared with the scene, and read into the scheme. */
-#include "base/agree.h"
+/* -restart: a checkpoint is checked, compared with the scene, and read into the model. */
 #include "base/version.h"
 #include "output/checkpoint.h"
 #include <errno.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 static PetscErrorCode RestartFormat(Scene scene) {
@@ -78,52 +76,6 @@ static PetscErrorCode RestartOptions(Scene scene, H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Files of curves may have other names or places, but not other numbers. */
-static PetscErrorCode RestartFiles(Scene scene, H5File *file) {
-  const struct {
-    const char *option, *file, *name, *digest;
-  } all[] = {{"-vesicle_file", scene->vesicles.file, "vesicle_digest", scene->shape.digest},
-             {"-obstacle_file", scene->obstacles.file, "obstacle_digest", scene->obstacles.outline.digest}};
-  char there[DIGEST];
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) {
-    PetscCall(H5GetString(file, all[k].name, sizeof(there), there));
-    PetvesCheck(!strcmp(there, all[k].digest), scene->comm,
-                "%s %s: its curves are not those that the run of -restart %s began with; allowed: the same points, "
-                "velocities and rotations",
-                all[k].option, all[k].file, scene->output.restart);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Refuse vectors with values that a run cannot have had. */
-static PetscErrorCode RestartVectors(Scheme s, const State *q) {
-  const struct {
-    const char *name;
-    Vec vector;
-    PetscReal most;
-  } all[] = {{"velocity", q->w, PETSC_MAX_REAL},
-             {"flow", q->flow, PETSC_MAX_REAL},
-             {"pressure", q->p, PETSC_MAX_REAL},
-             {"markers", q->X, 1e9 * s->fluid->grid->h},
-             {"marker velocity", q->U, PETSC_MAX_REAL},
-             {"tension", q->sigma, PETSC_MAX_REAL},
-             {"force on obstacles", q->solid, PETSC_MAX_REAL},
-             {"place of obstacles", q->place, 1e9 * s->fluid->grid->h}};
-  PetscFunctionBeginUser;
-  for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
-    PetscReal largest = 0;
-    PetscBool finite = PETSC_TRUE;
-    if (!all[k].vector) continue;
-    PetscCall(AgreeFinite(all[k].vector, &finite));
-    PetscCall(VecNorm(all[k].vector, NORM_INFINITY, &largest));
-    PetvesCheck(finite && largest <= all[k].most, s->scene->comm,
-                "-restart %s: its %s is up to %g; allowed: a checkpoint.h5 of petves", s->scene->output.restart,
-                all[k].name, finite ? (double)largest : (double)NAN);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Refuse a file if something in it could not be read. */
 PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
   PetscBool failed;
@@ -135,103 +87,36 @@ PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The level of step-size control counts from -time_step, which may differ from that of the checkpoint. */
-static PetscErrorCode RestartLevel(Scheme s, H5File *file, PetscInt *level) {
-  char base[64];
-  PetscFunctionBeginUser;
-  PetscCall(H5GetString(file, "-time_step", sizeof(base), base));
-  if (*base && strtod(base, NULL) > 0 && strtod(base, NULL) < 1e300)
-    *level += (PetscInt)PetscFloorReal(2 * PetscLog2Real((PetscReal)strtod(base, NULL) / s->scene->time.dt) + 1e-9);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The last row and the totals. */
-static PetscErrorCode RestartRecord(Scheme s, H5File *file, const PetscInt totals[4], Record *record) {
-  PetscBool fits;
+/* Read all of the open checkpoint. */
+static PetscErrorCode RestartReadAll(const Model *m, H5File *file, Record *record, PetscInt *frames) {
+  PetscBool plain, fits;
   char *text;
   PetscFunctionBeginUser;
-  record->solves = totals[0];
-  record->tension = totals[1];
-  record->bending = totals[2];
-  record->coupled = totals[3];
+  PetscCall(H5CheckLinks(file, &plain));
+  PetvesCheck(plain, file->comm,
+              "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves", file->path);
+  PetscCall(RestartOptions(m->scene, file));
+  PetscCall(m->ops.checkpoint(m->context, file, PETSC_FALSE, frames));
   PetscCall(H5GetText(file, "series_row", &text));
   RecordParse(record, text);
   PetscCall(PetscFree(text));
-  fits = file->rank || file->failed || RecordFits(record, s->state.step, s->state.t);
+  fits = file->rank || file->failed || RecordFits(record, *m->step, *m->t);
   PetscCallMPI(MPI_Bcast(&fits, 1, MPIU_BOOL, 0, file->comm));
-  PetvesCheck(fits, s->scene->comm,
+  PetvesCheck(fits, file->comm,
               "-restart %s: its row of series.csv is not that of its step; allowed: a checkpoint.h5 of petves",
-              s->scene->output.restart);
+              file->path);
+  PetscCall(RestartEntries(m->scene, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The present state and those before it. dt_earlier: the steps that led to the earlier states; to each but the first
-   state of a run there was one. */
-static PetscErrorCode RestartState(Scheme s, H5File *file, SchemeTimes *times) {
-  PetscFunctionBeginUser;
-  PetscCall(RestartLevel(s, file, &times->plan.level));
-  SchemeSetTimes(s, times);
-  for (PetscInt j = 0; j < s->past; j++) {
-    const PetscReal dt = times->dt_earlier[j];
-    PetvesCheck(dt >= 0 && dt <= 1e300 && (j == s->past - 1 || dt > 0), s->scene->comm,
-                "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
-                s->scene->output.restart, (double)dt);
-  }
-  for (PetscInt j = 0; j <= s->past; j++) {
-    State *state = j ? &s->old[j - 1] : &s->state;
-    PetscCall(CheckpointVectors(file, PETSC_FALSE, s, j, state));
-    PetscCall(RestartVectors(s, state));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Read all of the open checkpoint; memory[] is what the solvers have kept from earlier steps. */
-static PetscErrorCode RestartReadAll(Scheme s, H5File *file, Record *record, Tracers *tracers, PetscInt *frames,
-                                     PetscReal memory[]) {
-  const PetscInt numbers = SchemeMemorySize(s);
-  CheckpointNumbers n = {.times.plan = {.order = 1, .guess = 1}}; /* allowed, where nothing can be read */
-  PetscFunctionBeginUser;
-  PetscCall(CheckpointMoveNumbers(file, PETSC_FALSE, &n));
-  PetscCall(RestartEntries(s->scene, file));
-  PetscCall(RestartFiles(s->scene, file));
-  PetscCall(RestartState(s, file, &n.times));
-  PetscCall(CheckpointTracers(file, PETSC_FALSE, s, tracers));
-  *frames = n.frames;
-  PetscCall(RestartRecord(s, file, n.totals, record));
-  PetscCall(CheckpointEntry(file, PETSC_FALSE, "/solver", numbers, 1, memory));
-  for (PetscInt k = 0; k < numbers; k++)
-    if (PetscIsInfOrNanReal(memory[k])) file->failed = file->rank ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(RestartEntries(s->scene, file));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RestartOpen(Scene scene, H5File *file) {
-  PetscBool plain;
-  PetscFunctionBeginUser;
-  PetscCall(RestartFile(scene));
-  PetscCall(H5FileOpen(scene->comm, scene->output.restart, H5_READ, file));
-  PetscCall(H5CheckLinks(file, &plain));
-  if (!plain) H5FileClose(file);
-  PetvesCheck(plain, scene->comm,
-              "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves",
-              scene->output.restart);
-  const PetscErrorCode fits = RestartOptions(scene, file);
-  if (fits) H5FileClose(file);
-  PetscCall(fits);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RestartRead(Scheme s, Record *record, Tracers *tracers, PetscInt *frames) {
-  PetscReal *memory;
+PetscErrorCode RestartRead(const Model *m, Record *record, PetscInt *frames) {
   PetscErrorCode error;
   H5File file;
   PetscFunctionBeginUser;
-  PetscCall(RestartOpen(s->scene, &file));
-  PetscCall(PetscMalloc1(SchemeMemorySize(s), &memory));
-  error = RestartReadAll(s, &file, record, tracers, frames, memory);
+  PetscCall(RestartFile(m->scene));
+  PetscCall(H5FileOpen(m->scene->comm, m->scene->output.restart, H5_READ, &file));
+  error = RestartReadAll(m, &file, record, frames);
   H5FileClose(&file);
-  if (!error) error = SchemeRecall(s, memory);
-  PetscCall(PetscFree(memory));
   PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

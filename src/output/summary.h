@@ -1,39 +1,22 @@
 /* What a run says of itself: resolved.opts, progress lines on the terminal, and at its end a table on the terminal and
    summary.json. Rank 0 prints and writes; its clock counts. */
 #pragma once
-#include "output/folder.h"
-#include "output/record.h"
-
-/* The clock of progress lines. */
-typedef struct {
-  PetscReal from, end;    /* simulated times at the start and of -time_end */
-  PetscLogDouble start;   /* wall time at the start */
-  PetscLogDouble printed; /* and at the last progress line */
-} ProgressClock;
+#include "output/model.h"
 
 /* The caller fills in what is borrowed; else zero. */
 typedef struct {
-  Folder *folder;       /* borrowed */
-  Scheme scheme;        /* borrowed */
-  const Record *record; /* borrowed */
-  PetscInt frames;      /* in run.h5, when the run ends */
-  const char *reason;   /* why the run has ended: "finished", "steady", "stopped", or the failure */
-  double bytes_h5;      /* size of run.h5, when the run ends */
-  double bytes;         /* of run.h5, run.xmf, series.csv, vesicles.h5 and the checkpoints */
-  PetscReal seconds;    /* wall time of the run, when it ends */
-  ProgressClock clock;
+  Folder *folder;         /* borrowed */
+  const Model *model;     /* borrowed */
+  const Record *record;   /* borrowed */
+  PetscInt frames;        /* in run.h5, when the run ends */
+  const char *reason;     /* why the run has ended: "finished", "steady", "stopped", or the failure */
+  double bytes_h5;        /* size of run.h5, when the run ends */
+  double bytes;           /* of run.h5, run.xmf, series.csv, vesicles.h5 and the checkpoints */
+  PetscReal seconds;      /* wall time of the run, when it ends */
+  PetscReal from;         /* simulated time at the start */
+  PetscLogDouble start;   /* wall time at the start */
+  PetscLogDouble printed; /* and at the last progress line */
 } Summary;
-
-/* ProgressBegin - the run starts now, at the simulated time `from`. ProgressSay - as SummaryProgress.
-   SummaryPrintOptions - the options in force, with those of the scheme's solvers (NULL: without). SummaryPrintOrigin,
-   SummaryPrintString - the members of summary.json that every run ends with, from "ended" to the closing brace; a text
-   between quotes. ProgressSay is collective, the others are not. */
-PETSC_EXTERN ProgressClock ProgressBegin(PetscReal from, PetscReal end);
-PETSC_EXTERN PetscErrorCode ProgressSay(ProgressClock *clock, MPI_Comm comm, PetscInt step, PetscReal t,
-                                        PetscBool force);
-PETSC_EXTERN PetscErrorCode SummaryPrintOptions(Scene scene, Scheme scheme, FILE *file);
-PETSC_EXTERN void SummaryPrintOrigin(FILE *file);
-PETSC_EXTERN void SummaryPrintString(FILE *file, const char text[]);
 
 /* SummaryBegin - the run starts now: write resolved.opts, every option in force, with which the run is repeated.
    SummaryProgress - print step, time, percent of -time_end and the time that is left, at most every few seconds unless

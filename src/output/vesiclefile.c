@@ -6,16 +6,16 @@ static PetscErrorCode VesicleFileDescribe(const void *none, H5File *f) {
   return PETSC_SUCCESS;
 }
 
-PetscErrorCode VesicleFileOpen(AppendedFile *f, Folder *folder, Scheme s, PetscInt rows, const char restart[]) {
-  AppendedKind kind = {.name = "vesicles.h5", .entries = "rows", .now = s->state.t, .describe = VesicleFileDescribe};
-  const PetscInt vesicles = s->membrane->layout->bodies;
+PetscErrorCode VesicleFileOpen(AppendedFile *f, Folder *folder, const RecordSetting *s, PetscReal now, PetscInt rows,
+                               const char restart[]) {
+  AppendedKind kind = {.name = "vesicles.h5", .entries = "rows", .now = now, .describe = VesicleFileDescribe};
   PetscFunctionBeginUser;
-  if (vesicles <= RECORD_FEW) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->vesicles <= RECORD_FEW) PetscFunctionReturn(PETSC_SUCCESS);
   kind.series[kind.n++] = (AppendedSeries){"/step", 0, 1};
-  for (int c = 0; c < COLUMN_COUNT; c++)
-    if (RecordIsOwn(c)) {
-      (void)snprintf(kind.series[kind.n].path, APPENDED_NAME, "/%s", SeriesColumns[c]);
-      kind.series[kind.n].rows = vesicles;
+  for (PetscInt c = 0; c < s->columns; c++)
+    if (RecordIsOwn(&s->column[c])) {
+      (void)snprintf(kind.series[kind.n].path, APPENDED_NAME, "/%.*s", APPENDED_NAME - 2, s->column[c].name);
+      kind.series[kind.n].rows = s->vesicles;
       kind.series[kind.n++].columns = 1;
     }
   PetscCall(AppendedOpen(f, folder, &kind, rows, restart));
@@ -23,16 +23,17 @@ PetscErrorCode VesicleFileOpen(AppendedFile *f, Folder *folder, Scheme s, PetscI
 }
 
 PetscErrorCode VesicleFileWrite(AppendedFile *f, const Record *r, PetscInt step, PetscReal time) {
+  const RecordSetting *s = &r->setting;
   PetscReal number = step;
   PetscInt k = 0;
   PetscReal *values;
   PetscFunctionBeginUser;
   if (!f->open) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(r->vesicles, &values));
+  PetscCall(PetscMalloc1(s->vesicles, &values));
   AppendedSet(f, k++, &number);
-  for (int c = 0; c < COLUMN_COUNT; c++)
-    if (RecordIsOwn(c)) {
-      for (PetscInt v = 0; v < r->vesicles; v++) values[v] = r->each[v * COLUMN_COUNT + c];
+  for (PetscInt c = 0; c < s->columns; c++)
+    if (RecordIsOwn(&s->column[c])) {
+      for (PetscInt v = 0; v < s->vesicles; v++) values[v] = r->each[v * s->columns + c];
       AppendedSet(f, k++, values);
     }
   PetscCall(PetscFree(values));

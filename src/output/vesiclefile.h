@@ -7,10 +7,10 @@
 #include "output/appendedfile.h"
 #include "output/record.h"
 
-/* VesicleFileOpen - a new, empty file, or that of an earlier run, cut to its first `rows` rows, by AppendedOpen. The
-   file is flushed and closed by AppendedFlush and AppendedClose. Collective. */
-PETSC_EXTERN PetscErrorCode VesicleFileOpen(AppendedFile *file, Folder *folder, Scheme scheme, PetscInt rows,
-                                            const char restart[]);
+/* VesicleFileOpen - a new, empty file, or that of an earlier run, which has reached the time `now`, cut to its first
+   `rows` rows, by AppendedOpen. The file is flushed and closed by AppendedFlush and AppendedClose. Collective. */
+PETSC_EXTERN PetscErrorCode VesicleFileOpen(AppendedFile *file, Folder *folder, const RecordSetting *columns,
+                                            PetscReal now, PetscInt rows, const char restart[]);
 
 /* VesicleFileWrite - the row of a step's record. Collective; stops with one line when it cannot be written. */
 PETSC_EXTERN PetscErrorCode VesicleFileWrite(AppendedFile *file, const Record *record, PetscInt step, PetscReal time);

@@ -138,7 +138,7 @@ static inline PetscBool SceneObstaclesMove(const SceneObstacles *obstacles) {
   return obstacles->moving || obstacles->free.count ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Passive points, src/output/tracers.h. */
+/* Passive points, src/plane/tracers.h. */
 typedef struct {
   char file[PETSC_MAX_PATH_LEN];
   IntList grid; /* columns and rows */

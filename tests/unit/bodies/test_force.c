@@ -1,7 +1,7 @@
 /* A force that the program does not have, a spring from every marker to a point, is added to the list of forces: step,
    energy column, stress and preconditioner have it. */
 #include "facts.h"
-#include "output/record.h"
+#include "plane/plane.h"
 
 /* Minus the force is k (X - P), its energy k/2 |X - P|^2. */
 typedef struct {
@@ -52,6 +52,8 @@ typedef struct {
 
 /* Three steps, with the spring where it is given: with or without its part of the preconditioner. */
 static void Run(const char options[], PointSpring *spring, PetscBool dense, Shown *shown) {
+  struct _p_Plane plane;
+  RecordSetting columns;
   const char *last;
   ScopedWorld w;
   TestScene(&w.scene, "%s", options);
@@ -68,14 +70,21 @@ static void Run(const char options[], PointSpring *spring, PetscBool dense, Show
     TestCall(ForcesAdd(w.coupling->forces, &force));
   }
   TestWorldScheme(&w);
-  TestCall(RecordCreate(w.layout->bodies, &w.scene->obstacles, w.coupling->forces, &shown->record));
+  plane = (struct _p_Plane){.scene = w.scene, .membrane = w.membrane, .coupling = w.coupling, .scheme = w.scheme};
+  TestCall(PlaneColumns(&plane, &columns));
+  TestCall(RecordCreate(&columns, &shown->record));
   shown->its = 0;
   for (int k = 0; k < 3; k++) {
     TestCall(SchemeStep(w.scheme, PETSC_MAX_REAL));
     PetscCheckAbort(!*w.scheme->report.failure, w.scene->comm, PETSC_ERR_LIB, "%s", w.scheme->report.failure);
     shown->its += w.scheme->report.coupled_its;
   }
-  TestCall(RecordTake(&shown->record, w.scheme));
+  TestCall(PlaneRow(&plane, shown->record.last));
+  TestCall(PlaneMeasure(&plane, shown->record.each, shown->record.last));
+  TestSum(w.layout->bodies * COLUMN_COUNT, shown->record.each);
+  RecordCombine(&shown->record);
+  TestCall(PetscFree(plane.extra));
+  TestCall(PetscFree(plane.work));
   last = strrchr(shown->record.header, ',');
   shown->header_ends_with_spring = !strcmp(last, ",energy_spring");
   shown->energy = strtod(strrchr(shown->record.text, ',') + 1, NULL);

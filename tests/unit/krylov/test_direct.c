@@ -83,7 +83,7 @@ PetscErrorCode CoupledSolverSolve(CoupledSolver s, const CoupledProblem *q, Solv
 /* Where there is no body a step is a solve for u and p alone. */
 PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
   PetscErrorCode (*solve)(Mobility, const Forcing *, Vec, Vec);
-  const Coupling c = run->coupling;
+  const Coupling c = PlaneOf(&run->model)->coupling;
   CoupledProblem own = {0};
   Forcing copy;
   Vec w, q;

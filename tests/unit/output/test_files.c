@@ -43,26 +43,55 @@ static PetscInt Count(const char text[], char what) {
 }
 
 /* A row has room for the longest numbers of all its vesicles, and comes back from its text. Of up to 40 vesicles it has
-   15 columns each. */
+   the columns of each. */
 static void CheckRows(PetscInt vesicles) {
-  const PetscBool own = vesicles > 1 && vesicles <= 40 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscInt columns = COLUMN_COUNT + (own ? 15 * vesicles : 0);
+  static const RecordColumn column[] = {{"step", RECORD_RUN},
+                                        {"area", RECORD_TOTAL},
+                                        {"wall", RECORD_RUN},
+                                        {"contact", RECORD_PAIRS},
+                                        {"gap", RECORD_APART}};
+  static const char extra[][RECORD_NAME] = {"flux", "force"};
+  const RecordSetting setting = {vesicles, 5, 2, column, extra};
+  const PetscInt columns = 7 + (vesicles > 1 && vesicles <= 40 ? 2 * vesicles : 0);
   char *text;
   size_t used = 0;
-  const SceneObstacles none = {0};
   Record record;
-  TestCall(RecordCreate(vesicles, &none, &(struct _p_Forces){0}, &record));
+  TestCall(RecordCreate(&setting, &record));
   CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
-  const char *last = own ? TestText("gap_%d", (int)vesicles) : "normal_stress";
-  CHECK(!strcmp(strrchr(record.header, ',') + 1, last), "%d vesicles: the last column", (int)vesicles);
+  const char *last = columns > 7 ? TestText("gap_%d,flux,force", (int)vesicles) : "contact,gap,flux,force";
+  CHECK(!strcmp(record.header + strlen(record.header) - strlen(last), last), "%d vesicles: the last columns",
+        (int)vesicles);
   TestCall(PetscMalloc1(32 * columns, &text));
   for (PetscInt c = 0; c < columns; c++)
     used += (size_t)snprintf(text + used, 32, "%s%.17g", c ? "," : "", -1.2345678901234567e-300 * (c + 1));
   RecordParse(&record, text);
   CHECK(!strcmp(record.text, text), "%d vesicles: a row of %zu characters", (int)vesicles, used);
-  CHECK(record.last[COLUMN_AREA] == -1.2345678901234567e-300 * (COLUMN_AREA + 1), "%d vesicles: its numbers",
-        (int)vesicles);
+  CHECK(RecordNumber(&record, "area") == -1.2345678901234567e-300 * 2, "%d vesicles: its numbers", (int)vesicles);
   TestCall(PetscFree(text));
+  TestCall(RecordDestroy(&record));
+}
+
+/* What the columns of all vesicles are of theirs. */
+static void CheckCombined(void) {
+  static const struct {
+    RecordKind kind;
+    PetscReal all;
+  } fact[] = {{RECORD_RUN, 7},   {RECORD_PAIRS, -2}, {RECORD_APART, 7},  {RECORD_TOTAL, -2}, {RECORD_WORST, -4},
+              {RECORD_MEAN, -1}, {RECORD_FIRST, 2},  {RECORD_LEAST, -4}, {RECORD_LARGEST, 2}};
+  const int kinds = sizeof(fact) / sizeof(fact[0]);
+  RecordColumn column[9] = {{"a", RECORD_RUN}};
+  const RecordSetting setting = {.vesicles = 2, .columns = kinds, .column = column};
+  Record record;
+  for (int c = 0; c < kinds; c++) column[c].kind = fact[c].kind;
+  TestCall(RecordCreate(&setting, &record));
+  for (int c = 0; c < kinds; c++) {
+    record.last[c] = 7;
+    record.each[c] = 2;
+    record.each[kinds + c] = -4;
+  }
+  RecordCombine(&record);
+  for (int c = 0; c < kinds; c++)
+    CHECK(record.last[c] == fact[c].all, "kind %d of 2 and -4: %g", (int)fact[c].kind, record.last[c]);
   TestCall(RecordDestroy(&record));
 }
 
@@ -108,5 +137,6 @@ void Facts(void) {
   CheckRows(1);
   CheckRows(40);
   CheckRows(5000);
+  CheckCombined();
   CheckPlaces();
 }

@@ -1,5 +1,5 @@
-#include "output/tracers.h"
-#include "output/pointvelocity.h"
+#include "plane/tracers.h"
+#include "plane/pointvelocity.h"
 
 #define MOST 1000000 /* points of a grid */
 

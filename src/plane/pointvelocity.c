@@ -1,6 +1,6 @@
-#include "output/pointvelocity.h"
+#include "plane/pointvelocity.h"
 #include "base/agree.h"
-#include "output/cells.h"
+#include "plane/cells.h"
 
 /* u_inf[2n] at n points; all ranks stop alike. */
 static PetscErrorCode PointFlow(Scheme s, PetscInt n, const PetscReal X[], PetscReal u[]) {

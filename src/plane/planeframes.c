@@ -1,6 +1,9 @@
-#include "output/frames.h"
+/* Frames of run.h5: what a state in the plane is at a saved time. Each rank sends its rows of the fluid's fields to
+   rank 0; markers are on every rank. */
 #include "base/version.h"
-#include "output/cells.h"
+#include "plane/cells.h"
+#include "plane/gathered.h"
+#include "plane/plane.h"
 #include "scheme/pressuredrop.h"
 
 #define ABOUT                                                                                                          \
@@ -49,8 +52,8 @@ static PetscErrorCode FramesPutObstacles(H5File *f, const SceneObstacles *scene,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FramesDescribe(const void *context, H5File *f) {
-  const Scheme s = (Scheme)context;
+PetscErrorCode PlaneDescribe(const void *plane, H5File *f) {
+  const Scheme s = ((Plane)plane)->scheme;
   const Grid g = s->fluid->grid;
   const Layout l = s->membrane->layout;
   const Scene scene = s->scene;
@@ -88,17 +91,19 @@ static PetscErrorCode FramesDescribe(const void *context, H5File *f) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscBool FramesAreWrapped(Scheme s) {
+PetscBool PlaneIsWrapped(Scheme s) {
   const Grid g = s->fluid->grid;
   return !g->free && !(g->wall[0] && g->wall[1]);
 }
 
-PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt scheduled, const char restart[]) {
+PetscErrorCode PlaneSeries(void *plane, AppendedKind *kind) {
+  const Plane p = plane;
+  const Scheme s = p->scheme;
   const Grid g = s->fluid->grid;
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscInt M = s->membrane->layout->M, W = o ? o->layout->M : 0,
                  moving = SceneObstaclesMove(&s->scene->obstacles) ? W : 0, n = g->n[0] * g->rows[FIELD_P],
-                 tracers = f->tracers->n;
+                 tracers = p->tracers.n;
   const PetscBool single = s->scene->output.precision == PRECISION_SINGLE;
   const AppendedSeries all[] = {{"/fluid/u", g->n[1], g->n[0], single, "length/time"},
                                 {"/fluid/v", g->n[1], g->n[0], single, "length/time"},
@@ -109,22 +114,16 @@ PetscErrorCode FramesOpen(Frames *f, Folder *folder, Scheme s, PetscInt schedule
                                 {"/obstacle/force", W, 2, .unit = "length^3/time^2"},
                                 {"/vesicle/stretch", s->membrane->stretches ? M : 0, 1, .unit = "1"},
                                 {"/obstacle/markers", moving, 2, .unit = "length"},
-                                {"/vesicle/wrapped", FramesAreWrapped(s) ? M : 0, 2, .unit = "length"},
-                                {"/obstacle/wrapped", FramesAreWrapped(s) ? moving : 0, 2, .unit = "length"},
+                                {"/vesicle/wrapped", PlaneIsWrapped(s) ? M : 0, 2, .unit = "length"},
+                                {"/obstacle/wrapped", PlaneIsWrapped(s) ? moving : 0, 2, .unit = "length"},
                                 {"/tracers/points", tracers, 2, .unit = "length"},
-                                {"/tracers/wrapped", FramesAreWrapped(s) ? tracers : 0, 2, .unit = "length"}};
-  AppendedKind kind = {
-      .name = "run.h5", .entries = "frames", .now = s->state.t, .context = s, .describe = FramesDescribe};
+                                {"/tracers/wrapped", PlaneIsWrapped(s) ? tracers : 0, 2, .unit = "length"}};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++)
-    if (all[k].rows) kind.series[kind.n++] = all[k];
-  kind.series[kind.n++] = (AppendedSeries){"/fluid/pressure_gradient", 0, 1, .unit = "length/time^2"};
-  f->scheme = s;
-  PetscCall(PetscMalloc4(n, &f->cells[0], n, &f->cells[1], n, &f->cells[2],
-                         PetscMax(2 * PetscMax(tracers, PetscMax(M, W)), g->rank ? 0 : g->n[0] * g->n[1]), &f->all));
-  PetscCall(AppendedOpen(&f->file, folder, &kind, scheduled, restart));
-  f->scheduled = f->file.count;
-  if (f->scheduled) f->time = f->file.time[f->scheduled - 1];
+    if (all[k].rows) AppendedAddSeries(kind, all[k]);
+  AppendedAddSeries(kind, (AppendedSeries){"/fluid/pressure_gradient", 0, 1, .unit = "length/time^2"});
+  PetscCall(PetscMalloc4(n, &p->cells[0], n, &p->cells[1], n, &p->cells[2],
+                         PetscMax(2 * PetscMax(tracers, PetscMax(M, W)), g->rank ? 0 : g->n[0] * g->n[1]), &p->shown));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,65 +152,52 @@ static void FramesWrap(Scheme s, PetscBool solids, PetscReal X[]) {
   }
 }
 
-PetscErrorCode FramesWrite(Frames *f, PetscBool scheduled) {
-  const Scheme s = f->scheme;
+PetscErrorCode PlaneFrame(void *plane, AppendedFile *file) {
+  const Plane p = plane;
+  const Scheme s = p->scheme;
   const Obstacles o = s->coupling->bodies->obstacles;
-  const PetscBool wrapped = FramesAreWrapped(s), moving = SceneObstaclesMove(&s->scene->obstacles);
-  AppendedFile *file = &f->file;
+  const PetscBool wrapped = PlaneIsWrapped(s), moving = SceneObstaclesMove(&s->scene->obstacles);
   PetscReal gradient;
   PetscInt k = 0;
   PetscFunctionBeginUser;
-  file->count = f->scheduled;
-  PetscCall(CellFields(s, f->cells[0], f->cells[1], f->cells[2]));
+  PetscCall(CellFields(s, p->cells[0], p->cells[1], p->cells[2]));
   for (; k < 3; k++) {
-    PetscCall(GatherRows(s->fluid->grid, FIELD_P, s->fluid->grid->n[0], f->cells[k], f->all));
-    AppendedSet(file, k, f->all);
+    PetscCall(GatherRows(s->fluid->grid, FIELD_P, s->fluid->grid->n[0], p->cells[k], p->shown));
+    AppendedSet(file, k, p->shown);
   }
   for (int name = 0; name <= STATE_SOLIDS; name++) {
     const StatePart part = StatePartOf(s, &s->state, (StatePartName)name);
     if (!part.n) continue;
-    PetscCall(StateShow(s, (StatePartName)name, f->all));
-    if (name == STATE_SOLIDS) ObstaclesOrder(o, f->all, f->all);
-    AppendedSet(file, k++, f->all);
+    PetscCall(StateShow(s, (StatePartName)name, p->shown));
+    if (name == STATE_SOLIDS) ObstaclesOrder(o, p->shown, p->shown);
+    AppendedSet(file, k++, p->shown);
   }
   if (s->membrane->stretches) {
-    PetscCall(StateStretch(s, f->all));
-    AppendedSet(file, k++, f->all);
+    PetscCall(StateStretch(s, p->shown));
+    AppendedSet(file, k++, p->shown);
   }
   if (moving) {
-    ObstaclesCurves(o, StateInstant(&s->state), f->all);
-    AppendedSet(file, k++, f->all);
+    ObstaclesCurves(o, StateInstant(&s->state), p->shown);
+    AppendedSet(file, k++, p->shown);
   }
   if (wrapped && s->membrane->layout->M) {
     const StatePart markers = StatePartOf(s, &s->state, STATE_MARKERS);
-    PetscCall(StateGather(&markers, f->all));
-    FramesWrap(s, PETSC_FALSE, f->all);
-    AppendedSet(file, k++, f->all);
+    PetscCall(StateGather(&markers, p->shown));
+    FramesWrap(s, PETSC_FALSE, p->shown);
+    AppendedSet(file, k++, p->shown);
   }
   if (wrapped && moving) {
-    ObstaclesCurves(o, StateInstant(&s->state), f->all);
-    FramesWrap(s, PETSC_TRUE, f->all);
-    AppendedSet(file, k++, f->all);
+    ObstaclesCurves(o, StateInstant(&s->state), p->shown);
+    FramesWrap(s, PETSC_TRUE, p->shown);
+    AppendedSet(file, k++, p->shown);
   }
-  if (f->tracers->n) AppendedSet(file, k++, f->tracers->X);
-  if (f->tracers->n && wrapped) {
-    PetscCall(PetscArraycpy(f->all, f->tracers->X, 2 * f->tracers->n));
-    for (PetscInt i = 0; i < f->tracers->n; i++) ShiftIntoBox(s->fluid->grid, 1, f->all + 2 * i, 1, f->all + 2 * i);
-    AppendedSet(file, k++, f->all);
+  if (p->tracers.n) AppendedSet(file, k++, p->tracers.X);
+  if (p->tracers.n && wrapped) {
+    PetscCall(PetscArraycpy(p->shown, p->tracers.X, 2 * p->tracers.n));
+    for (PetscInt i = 0; i < p->tracers.n; i++) ShiftIntoBox(s->fluid->grid, 1, p->shown + 2 * i, 1, p->shown + 2 * i);
+    AppendedSet(file, k++, p->shown);
   }
   PetscCall(PressureGradient(s, &gradient));
   AppendedSet(file, k, &gradient);
-  PetscCall(AppendedFlush(file, PETSC_FALSE)); /* values before the time by which readers count them */
-  PetscCall(AppendedAdd(file, s->state.t));
-  PetscCall(AppendedFlush(file, PETSC_FALSE));
-  if (scheduled) f->scheduled = file->count;
-  f->time = s->state.t;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FramesClose(Frames *f, PetscBool *good) {
-  PetscFunctionBeginUser;
-  PetscCall(AppendedClose(&f->file, good));
-  PetscCall(PetscFree4(f->cells[0], f->cells[1], f->cells[2], f->all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,4 @@
-#include "output/gathered.h"
+#include "plane/gathered.h"
 
 StatePart StatePartOf(Scheme s, const State *q, StatePartName name) {
   const Layout vesicles = s->membrane->layout;

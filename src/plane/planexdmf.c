@@ -1,6 +1,6 @@
 /* The frames of run.h5 in run.xmf. */
-#include "output/frames.h"
 #include "output/xdmf.h"
+#include "plane/plane.h"
 
 /* Print two slabs as the x and y of a vector field with the dimensions dims. */
 static void PrintVector(FILE *f, const char name[], const char dims[], const char before[], const XdmfSlab part[2]) {
@@ -84,11 +84,12 @@ static void PrintObstacles(FILE *f, PetscInt t, Obstacles o, PetscBool moving, P
   fprintf(f, "</Grid>\n");
 }
 
-void FramesPrintXdmf(const void *frames, FILE *f, PetscInt t, PetscReal time) {
-  const Scheme s = ((const Frames *)frames)->scheme;
-  const PetscInt tracers = ((const Frames *)frames)->tracers->n;
+void PlanePrint(const void *plane, FILE *f, PetscInt t, PetscReal time) {
+  const Plane p = (Plane)plane;
+  const Scheme s = p->scheme;
+  const PetscInt tracers = p->tracers.n;
   const Obstacles solids = s->coupling->bodies->obstacles;
-  const PetscBool wrapped = FramesAreWrapped(s);
+  const PetscBool wrapped = PlaneIsWrapped(s);
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           (int)t, (double)time);
   PrintFluid(s->fluid->grid, f, t, s->scene->output.precision == PRECISION_SINGLE ? 4 : 8);

@@ -1,4 +1,4 @@
-#include "output/cells.h"
+#include "plane/cells.h"
 #include "scheme/fields.h"
 #include "base/agree.h"
 #include "layers/layercells.h"

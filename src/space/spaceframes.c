@@ -1,0 +1,139 @@
+/* Surfaces at the saved times, in run.h5 and run.xmf. */
+#include "base/version.h"
+#include "output/xdmf.h"
+#include "space/spacemodel.h"
+
+/* Harmonics at the points of a vesicle: the grid of degree p, then both poles. */
+PetscErrorCode SpaceFramesPoints(SpaceModel m) {
+  const SphereGrid *g = &m->space->sphere->shape.grid;
+  PetscReal *theta, *phi;
+  PetscFunctionBeginUser;
+  m->points = g->n + 2;
+  PetscCall(PetscMalloc1(m->space->count * m->points, &m->Y));
+  PetscCall(PetscMalloc2(m->points, &theta, m->points, &phi));
+  PetscCall(PetscArraycpy(theta, g->theta, g->n));
+  PetscCall(PetscArraycpy(phi, g->phi, g->n));
+  theta[g->n] = phi[g->n] = phi[g->n + 1] = 0;
+  theta[g->n + 1] = PETSC_PI;
+  PetscCall(HarmonicsAt(m->space->sphere->p, m->points, theta, phi, 1, m->Y));
+  PetscCall(PetscFree2(theta, phi));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Triangles between neighbouring latitudes, and of the caps about the poles: 4 (p + 1)^2 a vesicle. */
+static PetscInt SpaceFramesTriangles(SpaceModel m) {
+  return 2 * (m->points - 2);
+}
+
+static void SpaceFramesList(SpaceModel m, PetscInt list[]) {
+  const PetscInt p = m->space->sphere->p, around = 2 * p + 2, grid = m->points - 2;
+  PetscInt n = 0;
+  for (PetscInt v = 0; v < m->space->share.vesicles; v++)
+    for (PetscInt i = 0; i <= p + 1; i++) /* between the latitudes i - 1 and i; the poles are those beyond */
+      for (PetscInt j = 0; j < around; j++) {
+        const PetscInt next = (j + 1) % around, first = v * m->points;
+        const PetscInt above[2] = {i ? (i - 1) * around + j : grid, i ? (i - 1) * around + next : grid},
+                       below[2] = {i <= p ? i * around + j : grid + 1, i <= p ? i * around + next : grid + 1};
+        const PetscInt triangles[2][3] = {{above[0], below[0], below[1]}, {above[0], below[1], above[1]}};
+        for (int half = i > p; half < (i ? 2 : 1); half++)
+          for (int corner = 0; corner < 3; corner++) list[n++] = first + triangles[half][corner];
+      }
+}
+
+PetscErrorCode SpaceDescribe(const void *model, H5File *f) {
+  const SpaceModel m = (SpaceModel)model;
+  const PetscInt triangles = SpaceFramesTriangles(m) * m->space->share.vesicles, dim = 3;
+  PetscInt *list;
+  PetscReal *each;
+  PetscFunctionBeginUser;
+  H5Put(f, "dim", H5_INT, 1, &dim);
+  H5Put(f, "degree", H5_INT, 1, &m->space->sphere->p);
+  H5Put(f, "vesicles", H5_INT, 1, &m->space->share.vesicles);
+  H5Put(f, "nu", H5_REAL, 1, &m->scene->fluid.nu);
+  PetscCall(PetscMalloc1(m->space->share.vesicles, &each));
+  for (PetscInt v = 0; v < m->space->share.vesicles; v++) each[v] = ListEntry(&m->scene->membrane.stiffness, 1, v, 0);
+  H5Put(f, "vesicle_bending", H5_REAL, m->space->share.vesicles, each);
+  PetscCall(PetscFree(each));
+  PetscCall(PetscMalloc1(3 * triangles, &list));
+  SpaceFramesList(m, list);
+  H5PutRows(f, "/vesicle/triangles", H5_INT, triangles, 3, list);
+  for (PetscInt k = 0; k < triangles; k++) list[k] = 1 + k / SpaceFramesTriangles(m);
+  H5PutRows(f, "/vesicle/number", H5_INT, triangles, 0, list);
+  PetscCall(PetscFree(list));
+  H5PutText(f, "version", PETVES_VERSION);
+  H5PutText(f, "git_commit", PetvesCommit());
+  H5PutText(f, "about", "points of all vesicles, velocity and tension there; coefficients of real spherical harmonics");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceSeries(void *model, AppendedKind *kind) {
+  const SpaceModel m = model;
+  const PetscInt vesicles = m->space->share.vesicles, all = vesicles * m->points;
+  PetscFunctionBeginUser;
+  AppendedAddSeries(kind, (AppendedSeries){"/vesicle/points", all, 3, .unit = "length"});
+  AppendedAddSeries(kind, (AppendedSeries){"/vesicle/velocity", all, 3, .unit = "length/time"});
+  AppendedAddSeries(kind, (AppendedSeries){"/vesicle/tension", all, 1, .unit = "length^3/time^2"});
+  AppendedAddSeries(kind, (AppendedSeries){"/vesicle/coefficients", 3 * vesicles, m->space->count, .unit = "length"});
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next entry of a series: fields with coefficients own[own][fields][count], at all points [vesicles
+ * points][fields]. */
+static PetscErrorCode SpaceFramesSet(SpaceModel m, AppendedFile *file, PetscInt series, PetscInt fields,
+                                     const PetscReal own[]) {
+  const Space s = m->space;
+  PetscReal *c, *y;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(s->share.vesicles * fields * s->count, &c, s->share.vesicles * fields * m->points, &y));
+  PetscCall(ShareGather(&s->share, fields * s->count, own, c));
+  PetscCall(PetscArrayzero(y, s->share.vesicles * fields * m->points));
+  for (PetscInt v = 0; v < s->share.vesicles && !file->file.rank; v++)
+    for (PetscInt f = 0; f < fields; f++)
+      for (PetscInt k = 0; k < s->count; k++)
+        for (PetscInt i = 0; i < m->points; i++)
+          y[(v * m->points + i) * fields + f] += c[(v * fields + f) * s->count + k] * m->Y[k * m->points + i];
+  AppendedSet(file, series, y);
+  PetscCall(PetscFree2(c, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceFrame(void *model, AppendedFile *file) {
+  const SpaceModel m = model;
+  const Space s = m->space;
+  PetscReal *all;
+  PetscFunctionBeginUser;
+  PetscCall(SpaceFramesSet(m, file, 0, 3, s->state.X));
+  PetscCall(SpaceFramesSet(m, file, 1, 3, s->state.U));
+  PetscCall(SpaceFramesSet(m, file, 2, 1, s->state.sigma));
+  PetscCall(PetscMalloc1(s->share.vesicles * s->size, &all));
+  PetscCall(ShareGather(&s->share, s->size, s->state.X, all));
+  AppendedSet(file, 3, all);
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void SpacePrint(const void *model, FILE *f, PetscInt t, PetscReal time) {
+  const SpaceModel m = (SpaceModel)model;
+  const PetscInt points = m->points * m->space->share.vesicles,
+                 triangles = SpaceFramesTriangles(m) * m->space->share.vesicles;
+  const XdmfSlab place = {"/vesicle/points", 8, t, points, 0, 3, 3},
+                 velocity = {"/vesicle/velocity", 8, t, points, 0, 3, 3},
+                 tension = {"/vesicle/tension", 8, t, points, 0, 1, 0};
+  fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Uniform\"><Time Value=\"%.17g\"/>\n", (int)t, (double)time);
+  fprintf(f, "<Topology TopologyType=\"Triangle\" NumberOfElements=\"%d\">", (int)triangles);
+  fprintf(f,
+          "<DataItem Dimensions=\"%d 3\" NumberType=\"Int\" Precision=\"%d\" "
+          "Format=\"HDF\">run.h5:/vesicle/triangles</DataItem></Topology>\n",
+          (int)triangles, (int)sizeof(PetscInt));
+  fprintf(f,
+          "<Attribute Name=\"vesicle\" AttributeType=\"Scalar\" Center=\"Cell\"><DataItem Dimensions=\"%d\" "
+          "NumberType=\"Int\" Precision=\"%d\" Format=\"HDF\">run.h5:/vesicle/number</DataItem></Attribute>\n",
+          (int)triangles, (int)sizeof(PetscInt));
+  fprintf(f, "<Geometry GeometryType=\"XYZ\">\n");
+  XdmfPrintSlab(f, "", &place);
+  fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
+  XdmfPrintSlab(f, "", &tension);
+  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">\n");
+  XdmfPrintSlab(f, "", &velocity);
+  fprintf(f, "</Attribute></Grid>\n");
+}

@@ -1,0 +1,232 @@
+#include "space/spacemodel.h"
+#include "sphere/shape.h"
+#include "space/fromscene.h"
+
+#define ROUGH 0.01 /* spectrum_tail from which on a higher degree is due */
+
+static const RecordColumn SpaceColumnList[SPACE_COUNT] = {SPACE_COLUMNS(RECORD_COLUMN)};
+
+static PetscErrorCode SpaceModelStart(void *model) {
+  PetscFunctionBeginUser;
+  PetscCall(SpaceStart(((SpaceModel)model)->space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SpaceModelStep(void *model, PetscReal until) {
+  PetscFunctionBeginUser;
+  PetscCall(SpaceStep(((SpaceModel)model)->space, until));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SpaceModelView(void *model, PetscViewer viewer) {
+  PetscFunctionBeginUser;
+  PetscCall(KSPView(((SpaceModel)model)->space->ksp, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Velocity of the middle, rate of rotation about it in the x-y plane, largest normal speed, range of the tension. */
+static PetscErrorCode SpaceMeasureMotion(Surface at, const ShapeMoments *m, const PetscReal U[],
+                                         const PetscReal sigma[], PetscReal row[]) {
+  const PetscInt n = at->n, count = at->sphere->count;
+  PetscReal *u, *tension, turned = 0, inertia = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &u, n, &tension));
+  PetscCall(SphereTableValues(&at->sphere->fine, HARMONIC, count, 3, U, u));
+  PetscCall(SphereTableValues(&at->sphere->fine, HARMONIC, count, 1, sigma, tension));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal dA = at->sphere->fine.grid.weight[i] * at->J[i];
+    PetscReal r[3], normal = 0;
+    for (int d = 0; d < 3; d++) {
+      r[d] = at->D[HARMONIC][d * n + i] - m->center[d];
+      normal += u[d * n + i] * at->normal[d * n + i];
+    }
+    for (int d = 0; d < 3; d++) row[SPACE_VELOCITY_X + d] += dA * normal * r[d] / at->volume;
+    turned += dA * (r[0] * u[n + i] - r[1] * u[i]);
+    inertia += dA * (r[0] * r[0] + r[1] * r[1]);
+    row[SPACE_NORMAL_SPEED] = PetscMax(row[SPACE_NORMAL_SPEED], PetscAbsReal(normal));
+    row[SPACE_TENSION_MIN] = i ? PetscMin(row[SPACE_TENSION_MIN], tension[i]) : tension[i];
+    row[SPACE_TENSION_MAX] = i ? PetscMax(row[SPACE_TENSION_MAX], tension[i]) : tension[i];
+  }
+  row[SPACE_ROTATION] = turned / inertia;
+  PetscCall(PetscFree2(u, tension));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The own columns of an own vesicle. */
+static PetscErrorCode SpaceMeasureVesicle(Space s, PetscInt v, PetscReal row[]) {
+  const Vesicle3 vesicle = s->vesicle[v];
+  const Surface at = vesicle->about;
+  const PetscReal *X = s->state.X + v * s->size;
+  ShapeMoments m;
+  PetscFunctionBeginUser;
+  PetscCall(SurfacePlace(at, X, PETSC_FALSE));
+  PetscCall(ShapeMeasure(at, &m));
+  row[SPACE_BENDING] = vesicle->setting.bending * at->energy;
+  row[SPACE_AREA] = at->area;
+  row[SPACE_VOLUME] = at->volume;
+  row[SPACE_AREA_ERROR] = at->area / vesicle->area - 1;
+  row[SPACE_VOLUME_ERROR] = at->volume / vesicle->volume - 1;
+  for (int d = 0; d < 3; d++) {
+    row[SPACE_CENTER_X + d] = m.center[d];
+    row[SPACE_AXIS_SHORT + d] = m.axis[d];
+  }
+  const PetscReal *axis = m.direction[2], side = axis[0] < 0 ? -1 : 1;
+  row[SPACE_INCLINATION] = PetscAtan2Real(side * axis[1], side * axis[0]);
+  row[SPACE_ELEVATION] = PetscAsinReal(PetscClipInterval(side * axis[2], -1, 1));
+  row[SPACE_TAIL] = ShapeTail(s->sphere->p, X);
+  PetscCall(SpaceMeasureMotion(at, &m, s->state.U + v * s->size, s->state.sigma + v * s->count, row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SpaceMeasure(void *model, PetscReal each[], PetscReal last[]) {
+  const Space s = ((SpaceModel)model)->space;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->share.own; v++)
+    PetscCall(SpaceMeasureVesicle(s, v, each + (s->share.first + v) * SPACE_COUNT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SpaceRow(void *model, PetscReal last[]) {
+  const SpaceModel m = model;
+  const Space s = m->space;
+  PetscFunctionBeginUser;
+  last[SPACE_STEP] = s->state.step;
+  last[SPACE_TIME] = s->state.t;
+  last[SPACE_DT] = s->report.dt;
+  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->state.X));
+  last[SPACE_GAP] = s->cross ? s->cross->gap : NAN;
+  last[SPACE_ITS] = s->report.its;
+  last[SPACE_WALL] = s->report.seconds;
+  m->its += s->report.its;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A warning, once, when the degree is too small. */
+static PetscErrorCode SpaceWatch(void *model, const PetscReal last[]) {
+  const SpaceModel m = model;
+  const PetscReal tail = last[SPACE_TAIL];
+  PetscFunctionBeginUser;
+  if (tail < ROUGH || *m->warning) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(m->warning, sizeof(m->warning),
+                          "the spherical harmonics do not resolve a vesicle after step %" PetscInt_FMT
+                          ", time %g: spectrum_tail is %.2g; try -sphere_degree %" PetscInt_FMT,
+                          m->space->state.step, (double)m->space->state.t, (double)tail, m->space->sphere->p + 4));
+  PetscCall(PetvesSay(m->scene->comm, "petves: warning: %s\n", m->warning));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const char *SpaceWarning(const void *model, PetscInt i) {
+  const SpaceModel m = (SpaceModel)model;
+  return i == 0 && *m->warning ? m->warning : NULL;
+}
+
+/* Write or read whole numbers and times; a run has had those that are read. */
+static PetscErrorCode SpaceMoveNumbers(SpaceModel m, H5File *file, PetscBool write, PetscInt *frames) {
+  SpaceNumbers n = SpaceGetNumbers(m->space);
+  PetscInt whole[] = {n.step, n.past, n.order, n.solved, *frames, m->its};
+  PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
+  const PetscInt reals = 2 + BDF_MOST + AGE_MEMORY;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(real + 2, n.dt_last, BDF_MOST));
+  PetscCall(PetscArraycpy(real + 2 + BDF_MOST, n.age, AGE_MEMORY));
+  const CheckpointNumber all[] = {{"numbers", 0, 0, whole, NULL, 6}, {"times", 0, 0, NULL, real, reals}};
+  PetscCall(CheckpointMoveNumbers(file, write, 2, all));
+  if (write) PetscFunctionReturn(PETSC_SUCCESS);
+  if (whole[0] < 0 || whole[1] < 0 || whole[1] >= BDF_MOST || whole[2] < 1 || whole[2] > BDF_MOST || whole[4] < 0)
+    real[0] = NAN;
+  CheckpointFinite(file, reals, real);
+  PetscCall(RestartEntries(m->scene, file));
+  n = (SpaceNumbers){
+      .step = whole[0], .past = whole[1], .order = whole[2], .solved = whole[3], .t = real[0], .made = real[1]};
+  PetscCall(PetscArraycpy(n.dt_last, real + 2, BDF_MOST));
+  PetscCall(PetscArraycpy(n.age, real + 2 + BDF_MOST, AGE_MEMORY));
+  SpaceSetNumbers(m->space, &n);
+  *frames = whole[4];
+  m->its = whole[5];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The numbers and the arrays [vesicles][each] of all ranks. */
+static PetscErrorCode SpaceCheckpoint(void *model, H5File *file, PetscBool write, PetscInt *frames) {
+  const SpaceModel m = model;
+  const VesicleShare *share = &m->space->share;
+  SpaceArray array[SPACE_ARRAYS];
+  PetscFunctionBeginUser;
+  PetscCall(SpaceMoveNumbers(m, file, write, frames));
+  const PetscInt arrays = SpaceArrays(m->space, array);
+  for (PetscInt k = 0; k < arrays; k++) {
+    const PetscInt n = share->vesicles * array[k].each;
+    PetscReal *all;
+    PetscCall(PetscCalloc1(n, &all));
+    if (write) PetscCall(ShareGather(share, array[k].each, array[k].own, all));
+    PetscCall(CheckpointEntry(file, write, array[k].name, share->vesicles, array[k].each, all));
+    if (!write) PetscCall(ShareScatter(share, array[k].each, all, array[k].own));
+    CheckpointFinite(file, n, all);
+    PetscCall(PetscFree(all));
+  }
+  if (write) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RestartEntries(m->scene, file));
+  PetscCall(SpaceRecall(m->space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void SpaceSummary(const void *model, FILE *f) {
+  const SpaceModel m = (SpaceModel)model;
+  fprintf(f, "  \"totals\": {\"steps\": %d, \"coupled_its\": %d},\n  \"dim\": 3,\n  \"degree\": %d,\n",
+          (int)m->space->state.step, (int)m->its, (int)m->space->sphere->p);
+  fprintf(f, "  \"vesicles\": %d,\n", (int)m->space->share.vesicles);
+}
+
+static PetscErrorCode SpaceTable(const void *model, const PetscReal last[]) {
+  const SpaceModel m = (SpaceModel)model;
+  PetscFunctionBeginUser;
+  PetscCall(PetvesSay(m->scene->comm, "  iterations a step             coupled %.1f\n",
+                      (double)m->its / (double)PetscMax(1, m->space->state.step)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SpaceModelDestroy(void *model) {
+  SpaceModel m = model;
+  PetscFunctionBeginUser;
+  PetscCall(SpaceDestroy(&m->space));
+  PetscCall(PetscFree(m->Y));
+  PetscCall(PetscFree(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const ModelOps SpaceOps = {.start = SpaceModelStart,
+                                  .step = SpaceModelStep,
+                                  .view = SpaceModelView,
+                                  .destroy = SpaceModelDestroy,
+                                  .row = SpaceRow,
+                                  .measure = SpaceMeasure,
+                                  .watch = SpaceWatch,
+                                  .warning = SpaceWarning,
+                                  .series = SpaceSeries,
+                                  .describe = SpaceDescribe,
+                                  .frame = SpaceFrame,
+                                  .print = SpacePrint,
+                                  .checkpoint = SpaceCheckpoint,
+                                  .summary = SpaceSummary,
+                                  .table = SpaceTable};
+
+PetscErrorCode SpaceModelCreate(Scene scene, Model *model) {
+  SpaceModel m;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  *model = (Model){.ops = SpaceOps, .context = m};
+  m->scene = scene;
+  PetscCall(SpaceFromScene(scene, &m->space));
+  PetscCall(SpaceFramesPoints(m));
+  const Space s = m->space;
+  *model = (Model){.ops = SpaceOps,
+                   .context = m,
+                   .scene = scene,
+                   .step = &s->state.step,
+                   .t = &s->state.t,
+                   .dt = &s->setting.policy.base,
+                   .failure = s->report.failure,
+                   .policy = &s->setting.policy,
+                   .columns = {.vesicles = s->share.vesicles, .columns = SPACE_COUNT, .column = SpaceColumnList}};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
