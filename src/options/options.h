@@ -39,6 +39,7 @@ typedef struct {
   const char *help;
   const OptionNeed *need; /* NULL: none */
   PetscBool may_change;   /* between a run and one that goes on from its checkpoint */
+  PetscInt group;         /* for OptionTable.missing */
 } OptionRow;
 
 /* A default that depends on other options, in place of its row's. A table of them ends with a row without a name. */

@@ -2,63 +2,27 @@
 #include "scene/checks.h"
 #include "scene/properties.h"
 
-/* Options of the plane that scenes in space have too. */
-static const char *const in_space[] = {"-dim",
-                                       "-flow_type",
-                                       "-flow_rate",
-                                       "-flow_chi",
-                                       "-flow_ca",
-                                       "-flow_peak_velocity",
-                                       "-flow_velocity",
-                                       "-flow_half_width",
-                                       "-flow_center_x",
-                                       "-flow_center_y",
-                                       "-fluid_viscosity",
-                                       "-fluid_gravity",
-                                       "-vesicle_density_difference",
-                                       "-vesicle_count",
-                                       "-vesicle_center",
-                                       "-vesicle_bending",
-                                       "-vesicle_viscosity_ratio",
-                                       "-scheme_type",
-                                       "-scheme_order",
-                                       "-time_step",
-                                       "-time_end",
-                                       "-output_dir",
-                                       "-output_overwrite",
-                                       "-output_every",
-                                       "-checkpoint_every",
-                                       "-checkpoint_keep",
-                                       "-restart",
-                                       "-time_steady_tol",
-                                       "-time_wall_limit",
-                                       "-view",
-                                       "-allow_unused_options",
-                                       NULL};
-
-/* What scenes in space have in place of options of the plane. */
-static const char *const instead[][2] = {{"-vesicle_area", "-dim 2; -dim 3 has -vesicle_radius"},
-                                         {"-vesicle_reduced_area", "-dim 2; -dim 3 has -vesicle_reduced_volume"},
-                                         {"-vesicle_semi_axes", "-dim 2; -dim 3 has -vesicle_half_axes"},
-                                         {"-vesicle_shape", "-dim 2; -dim 3 has -vesicle_spheroid"},
-                                         {"-vesicle_angle", "-dim 2; -dim 3 has -vesicle_axis"},
-                                         {"-vesicle_markers", "-dim 2; -dim 3 has -sphere_degree"},
-                                         {"-domain_cells", "-dim 2; -dim 3 has no grid, see -sphere_degree"},
-                                         {"-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
+/* What scenes of the other dimension have in place of an option. */
+static const struct {
+  Dimension dim;
+  const char *name, *say;
+} instead[] = {
+    {DIM_PLANE, "-vesicle_radius", "-dim 3; -dim 2 has -vesicle_area and -vesicle_reduced_area, or -vesicle_semi_axes"},
+    {DIM_PLANE, "-vesicle_reduced_volume", "-dim 3; -dim 2 has -vesicle_reduced_area"},
+    {DIM_SPACE, "-vesicle_area", "-dim 2; -dim 3 has -vesicle_radius"},
+    {DIM_SPACE, "-vesicle_reduced_area", "-dim 2; -dim 3 has -vesicle_reduced_volume"},
+    {DIM_SPACE, "-vesicle_semi_axes", "-dim 2; -dim 3 has -vesicle_half_axes"},
+    {DIM_SPACE, "-vesicle_shape", "-dim 2; -dim 3 has -vesicle_spheroid"},
+    {DIM_SPACE, "-vesicle_angle", "-dim 2; -dim 3 has -vesicle_axis"},
+    {DIM_SPACE, "-vesicle_markers", "-dim 2; -dim 3 has -sphere_degree"},
+    {DIM_SPACE, "-domain_cells", "-dim 2; -dim 3 has no grid, see -sphere_degree"},
+    {DIM_SPACE, "-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
 
 const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
-  const OptionNeed *need = row->need;
-  if (((Scene)scene)->dim == DIM_PLANE) {
-    if (!strcmp(row->name, "-vesicle_radius"))
-      return "-dim 3; -dim 2 has -vesicle_area and -vesicle_reduced_area, or -vesicle_semi_axes";
-    return strcmp(row->name, "-vesicle_reduced_volume") ? NULL : "-dim 3; -dim 2 has -vesicle_reduced_area";
-  }
-  if (need && need->any_of && need->offset == offsetof(struct _p_Scene, dim)) return NULL; /* one of space alone */
-  for (int k = 0; in_space[k]; k++)
-    if (!strcmp(row->name, in_space[k])) return NULL;
+  const PetscInt dim = ((Scene)scene)->dim;
   for (size_t k = 0; k < sizeof(instead) / sizeof(instead[0]); k++)
-    if (!strcmp(row->name, instead[k][0])) return instead[k][1];
-  return "-dim 2";
+    if (dim == (PetscInt)instead[k].dim && !strcmp(row->name, instead[k].name)) return instead[k].say;
+  return dim == DIM_PLANE || row->group ? NULL : "-dim 2";
 }
 
 static PetscErrorCode SceneCheckSpaceLists(Scene s) {
