@@ -77,7 +77,7 @@ PetscErrorCode FolderClaim(Folder *folder, const char restart[], PetscBool overw
     if (!access(path, F_OK)) found[1] = k;
   }
   PetscCallMPI(MPI_Bcast(found, 2, MPI_INT, 0, folder->comm));
-  *here = found[0] ? PETSC_TRUE : PETSC_FALSE;
+  *here = found[0];
   PetvesCheck(found[1] < 0, folder->comm,
               "-output_dir %s: holds %s of another run; allowed: a new folder, -output_overwrite to replace what is "
               "there, or -restart %s/checkpoint.h5 to go on",

@@ -119,7 +119,7 @@ static PetscBool EntryIsPlain(H5File *f, const char name[], int ndims, const Pet
   for (int d = 0; d <= ndims && plain; d++) plain = chunk[d] == size[d] && size[d] == (d ? (hsize_t)dims[d - 1] : 1);
   if (how >= 0) (void)H5Pclose(how);
   if (set >= 0) (void)H5Dclose(set);
-  return plain ? PETSC_TRUE : PETSC_FALSE;
+  return plain;
 }
 
 void H5BeginEntry(H5File *f, PetscBool write, const char name[], int ndims, const PetscInt dims[]) {

@@ -72,7 +72,7 @@ PetscErrorCode SeriesOpen(Series *s) {
   FolderPath(s->folder, SERIES, path);
   FolderPath(s->folder, SERIES_TEMPORARY, temporary);
   if (!s->folder->rank && !rename(temporary, path)) s->file = fopen(path, "a");
-  PetscCall(FolderCheck(s->folder, s->file ? PETSC_TRUE : PETSC_FALSE, SERIES));
+  PetscCall(FolderCheck(s->folder, s->file != NULL, SERIES));
   if (s->file) (void)setvbuf(s->file, NULL, _IOLBF, 0); /* each row at once */
   FolderWatch(s->folder, SERIES);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -87,7 +87,7 @@ static PetscReal FilmError(PetscReal spacings) {
 static PetscErrorCode StartThinnestFilm(Scene scene, PetscReal *spacings, PetscReal *error) {
   const Shape *s = &scene->shape;
   const CurveRoom room = SceneRoom(scene);
-  const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL;
   CurveFilm film;
   PetscReal *ds;
   PetscFunctionBeginUser;
@@ -124,7 +124,7 @@ static PetscErrorCode StartIsResolved(Scene scene, PetscBool *resolved) {
   PetscReal spacings, error;
   PetscFunctionBeginUser;
   PetscCall(StartThinnestFilm(scene, &spacings, &error));
-  *resolved = error < 0.5 * scene->scheme.wanted && spacings > SCENE_FILM ? PETSC_TRUE : PETSC_FALSE;
+  *resolved = error < 0.5 * scene->scheme.wanted && spacings > SCENE_FILM;
   for (PetscInt v = 0; v < s->vesicles && *resolved; v++) {
     Spectral spectral;
     PetscCall(SpectralCreate(s->start[v + 1] - s->start[v], &spectral));
@@ -173,7 +173,7 @@ static PetscErrorCode AutoNumber(const char format[], PetscReal number, char val
 static PetscErrorCode SuggestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal rate = FlowShearRate(&s->flow), rest = SceneRestTime(s),
                   time = rate > 0 ? PetscMin(rest, 1 / rate) : rest;
-  const PetscBool timed = time < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool timed = time < PETSC_MAX_REAL;
   (void)snprintf(why, AUTO_TEXT, timed ? "a twentieth of the fastest time of the scene" : "the default");
   return AutoNumber("%.6g", timed ? 0.05 * time : time, value);
 }
@@ -196,7 +196,7 @@ static PetscErrorCode SuggestTolerance(Draft s, char value[AUTO_TEXT], char why[
 /* The largest step is that for the error at rest, but not larger than the flow bears. */
 static PetscErrorCode SuggestLargestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal rest = SceneRestTime(s), flow = SceneFlowStep(s), own = CalibratedRow(s)->max_step;
-  const PetscBool bends = s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool bends = s->time.adapt == ADAPT_ERROR && s->membrane.bending > 0;
   if (bends && flow < own * rest)
     (void)snprintf(why, AUTO_TEXT, "what this flow bears");
   else if (bends)

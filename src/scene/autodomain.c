@@ -21,7 +21,7 @@
 static PetscBool BoxIsOpen(Scene s) {
   const PetscInt flow = s->flow.type;
   if (flow == FLOW_POISEUILLE || flow == FLOW_CUSTOM || s->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
-  return s->vesicles.packing == 0 && s->gravity.g.n == 2 && !SceneHasGravity(s) ? PETSC_TRUE : PETSC_FALSE;
+  return s->vesicles.packing == 0 && s->gravity.g.n == 2 && !SceneHasGravity(s);
 }
 
 static PetscErrorCode SceneCountVesicles(Scene s, PetscInt *count) {
@@ -38,15 +38,12 @@ static PetscErrorCode SceneCountVesicles(Scene s, PetscInt *count) {
 /* Find out whether the scene asks for something that unbounded fluid does not have. */
 static PetscErrorCode SceneNeedsGrid(Scene s, PetscBool *needs) {
   static const char *const backends[] = {"-helmholtz_type", "-poisson_type"};
-  const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part;
   PetscInt count;
   PetscFunctionBeginUser;
   PetscCall(SceneCountVesicles(s, &count));
   *needs = strcmp(s->scheme.type, "coupled") || s->coupling.near_field != NEAR_EXACT || box_part ||
-                   s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE ||
-                   count > SCENE_MOST_FREE
-               ? PETSC_TRUE
-               : PETSC_FALSE;
+           s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE || count > SCENE_MOST_FREE;
   for (size_t k = 0; k < sizeof(backends) / sizeof(backends[0]); k++)
     if (SceneGiven(s, backends[k])) *needs = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,7 +71,7 @@ PetscErrorCode SceneSuggestBoundaryX(Draft s, char value[AUTO_TEXT], char why[AU
 }
 
 PetscErrorCode SceneSuggestBoundaryY(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
-  const PetscBool free = FluidSpecIsFree(&s->fluid) && !SceneGiven(s, "-domain_bc_x") ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool free = FluidSpecIsFree(&s->fluid) && !SceneGiven(s, "-domain_bc_x");
   PetscFunctionBeginUser;
   if (free) PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
   if (free || !SceneGiven(s, "-domain_box")) PetscCall(PetscStrncpy(why, free ? UNBOUNDED : "the default", AUTO_TEXT));
@@ -144,7 +141,7 @@ PetscErrorCode SceneSuggestBox(Draft s, char value[AUTO_TEXT], char why[AUTO_TEX
   const PetscReal unit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(half)) - 1);
   for (int d = 0; d < 2; d++) {
     const PetscInt n = s->domain.cells.v[d], other = s->domain.cells.v[1 - d];
-    const PetscBool longer = SceneGiven(s, "-domain_cells") && n > other ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool longer = SceneGiven(s, "-domain_cells") && n > other;
     side[d] = BoxRounded(half, unit, PETSC_TRUE) * (longer ? (PetscReal)n / other : 1);
     middle[d] = BoxRounded((e.around[2 * d] + e.around[2 * d + 1]) / 2, unit, PETSC_FALSE);
   }

@@ -57,7 +57,7 @@ static PetscReal WallError(AutoFluid fluid, PetscReal gap, PetscReal h) {
 static PetscBool CellsAreSmooth(PetscInt n) {
   for (PetscInt prime = 2; prime <= 5; prime++)
     while (n % prime == 0) n /= prime;
-  return n == 1 ? PETSC_TRUE : PETSC_FALSE;
+  return n == 1;
 }
 
 /* The least whole numbers in proportion to the sides of a box; false: none up to the most cells across. */
@@ -81,7 +81,7 @@ PetscBool SceneSquareCells(const PetscReal box[4], PetscReal h, PetscInt cells[2
   PetscInt times = (PetscInt)PetscCeilReal(wanted);
   while (!CellsAreSmooth(times)) times++;
   for (int d = 0; d < 2; d++) cells[d] = sides[d] * times;
-  return PetscMax(cells[0], cells[1]) <= SCENE_MOST_ACROSS ? PETSC_TRUE : PETSC_FALSE;
+  return PetscMax(cells[0], cells[1]) <= SCENE_MOST_ACROSS;
 }
 
 /* Cells a R0 up to which one is taken for a wall: what has the box part was measured to 12, the rest of second order.

@@ -25,7 +25,7 @@ PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]) {
   if (!rules) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal *number = rule->number;
   for (const char *p = rule->message; *p && used < sizeof(text) - 1; used += strlen(text + used)) {
-    const PetscBool special = *p == '{' || *p == '%' ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool special = *p == '{' || *p == '%';
     const size_t n = strcspn(p, *p == '{' ? "}" : *p == '%' ? "gfc" : "{%"), left = sizeof(text) - used;
     (void)snprintf(part, sizeof(part), "%.*s", (int)(n + (*p == '%')), p);
     if (*p == '{')
@@ -201,7 +201,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
   PetscReal lawless = 0; /* a modulus without a law */
   for (PetscInt k = 0; k < entries; k++) {
     const PetscReal modulus = ListEntry(&m->stretching, 1, k, 0);
-    const PetscBool law = m->law.v[laws > 1 ? k : 0] != LAW_INEXTENSIBLE ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool law = m->law.v[laws > 1 ? k : 0] != LAW_INEXTENSIBLE;
     if (law) stretches = PETSC_TRUE;
     if (law && modulus == 0) without++;
     if (!law && modulus > 0) lawless = modulus;

@@ -2,15 +2,15 @@
 #include "scene/properties.h"
 
 static PetscBool IsBiconcave(const void *scene) {
-  return ((Scene)scene)->vesicles.shape == SHAPE_BICONCAVE ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->vesicles.shape == SHAPE_BICONCAVE;
 }
 
 static PetscBool IsSpace(const void *scene) {
-  return ((Scene)scene)->dim == DIM_SPACE ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->dim == DIM_SPACE;
 }
 
 static PetscBool HasFormula(const void *scene) {
-  return SceneGiven((Scene)scene, "-flow_u") || SceneGiven((Scene)scene, "-flow_v") ? PETSC_TRUE : PETSC_FALSE;
+  return SceneGiven((Scene)scene, "-flow_u") || SceneGiven((Scene)scene, "-flow_v");
 }
 
 static PetscBool IsProjection(const void *scene) {
@@ -18,7 +18,7 @@ static PetscBool IsProjection(const void *scene) {
 }
 
 static PetscBool HasNoNearField(const void *scene) {
-  return ((Scene)scene)->coupling.near_field == NEAR_NONE ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->coupling.near_field == NEAR_NONE;
 }
 
 static PetscBool IsFree(const void *scene) {
@@ -30,19 +30,19 @@ static PetscBool IsFree(const void *scene) {
 static PetscBool IsLarge(const void *scene) {
   const IntList cells = ((Scene)scene)->domain.cells; /* not checked yet */
   if (HasNoNearField(scene) || IsFree(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE) return PETSC_FALSE;
-  return cells.n == 2 && PetscMin(cells.v[0], cells.v[1]) >= LARGE_BOX ? PETSC_TRUE : PETSC_FALSE;
+  return cells.n == 2 && PetscMin(cells.v[0], cells.v[1]) >= LARGE_BOX;
 }
 
 /* -scheme_auto has a largest step of its own. */
 static PetscBool IsAdaptive(const void *scene) {
   const Scene s = (Scene)scene;
-  return s->time.adapt != ADAPT_NONE && s->shape.vesicles && s->scheme.wanted == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return s->time.adapt != ADAPT_NONE && s->shape.vesicles && s->scheme.wanted == 0;
 }
 
 /* At rest for the error that the area target leaves there; a flow has steps of its own. */
 static void LargestStep(const void *scene, char value[OPTION_MAX_NAME]) {
   const Scene s = (Scene)scene;
-  const PetscBool rests = FlowShearRate(&s->flow) == 0 && !FlowIsCustom(&s->flow) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool rests = FlowShearRate(&s->flow) == 0 && !FlowIsCustom(&s->flow);
   const PetscReal most = rests ? SceneRestTime(s) : SceneFlowStep(s);
   if (most < PETSC_MAX_REAL) (void)snprintf(value, OPTION_MAX_NAME, "%.6g", (double)most);
 }
@@ -54,7 +54,7 @@ static PetscReal LeastOutputTime(const void *scene) {
 }
 
 static PetscBool IsLong(const void *scene) {
-  return LeastOutputTime(scene) > 0.1 ? PETSC_TRUE : PETSC_FALSE;
+  return LeastOutputTime(scene) > 0.1;
 }
 
 static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
@@ -71,7 +71,7 @@ static PetscBool IsWalled(const void *scene) {
   if (s->dim == DIM_SPACE) return PETSC_FALSE;
   const RealList box = s->domain.box; /* not checked yet */
   if (s->flow.type != FLOW_POISEUILLE || s->fluid.bc[1] != BC_WALL || box.n != 4) return PETSC_FALSE;
-  return box.v[2] < box.v[3] ? PETSC_TRUE : PETSC_FALSE;
+  return box.v[2] < box.v[3];
 }
 
 static void HalfHeight(const void *scene, char value[OPTION_MAX_NAME]) {

@@ -27,7 +27,7 @@ typedef struct {
 
 /* FlowIsCustom - the velocity is a function of which nothing else is known. */
 static inline PetscBool FlowIsCustom(const Flow *flow) {
-  return flow->type == FLOW_CUSTOM || flow->type == FLOW_FORMULA ? PETSC_TRUE : PETSC_FALSE;
+  return flow->type == FLOW_CUSTOM || flow->type == FLOW_FORMULA;
 }
 
 /* FlowReadFormulas - make the function of FLOW_FORMULA (formula.c). Collective; stops with the user's message.

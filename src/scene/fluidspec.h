@@ -40,5 +40,5 @@ static inline void FluidSpecPeriods(const FluidSpec *spec, PetscReal period[2]) 
 
 /* FluidSpecIsFree - whether the fluid is unbounded: the box is only the window in which fields are written. */
 static inline PetscBool FluidSpecIsFree(const FluidSpec *spec) {
-  return spec->bc[0] == BC_FREE ? PETSC_TRUE : PETSC_FALSE;
+  return spec->bc[0] == BC_FREE;
 }

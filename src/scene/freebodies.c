@@ -19,7 +19,7 @@ static PetscErrorCode FreeBodiesRead(Draft scene) {
     own->is[b - 1] = PETSC_TRUE;
   }
   for (PetscInt b = 0; b < curves; b++) {
-    own->is[b] = own->is[b] || all ? PETSC_TRUE : PETSC_FALSE;
+    own->is[b] = own->is[b] || all;
     own->count += own->is[b];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -65,7 +65,7 @@ static PetscBool FlowIsSeamless(Scene scene, int *dir) {
    the exact near field, by the inertia of a step. */
 static PetscErrorCode SceneCheckStiffness(Scene scene) {
   const PetscReal R0 = SceneLargestRadius(scene), dt = scene->time.dt, inertia = R0 * R0 / dt;
-  const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool viscous = scene->coupling.near_field == NEAR_EXACT;
   const PetscReal resists = viscous ? scene->fluid.nu : PetscMax(scene->fluid.nu, inertia);
   const PetscReal own = resists * R0 * R0 * R0 / scene->membrane.bending;
   return SCENE_REFUSE_IF(scene, R0 > 0 && scene->membrane.bending > 0 && dt >= MOST_STIFF * own,
@@ -78,7 +78,7 @@ static PetscErrorCode SceneCheckStiffness(Scene scene) {
    shear flow gets the warning). */
 static PetscBool FlowIsPaper(Scene scene) {
   const PetscInt type = scene->flow.type;
-  return type == FLOW_QUIESCENT || type == FLOW_SHEAR || FlowIsCustom(&scene->flow) ? PETSC_TRUE : PETSC_FALSE;
+  return type == FLOW_QUIESCENT || type == FLOW_SHEAR || FlowIsCustom(&scene->flow);
 }
 
 /* The first of these that holds decides. */

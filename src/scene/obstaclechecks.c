@@ -66,7 +66,7 @@ static PetscInt ObstacleSolidAlong(const Shape *s, int d, int up, const PetscRea
   for (PetscInt b = 0; b < s->vesicles; b++)
     for (PetscInt k = s->start[b]; k < s->start[b + 1] && s->kind[b].span[1 - d] != 0; k++) {
       const PetscReal *A = s->X + 2 * k, *span = s->kind[b].span;
-      const PetscBool last = k + 1 == s->start[b + 1] ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool last = k + 1 == s->start[b + 1];
       const PetscReal *B = last ? s->X + 2 * s->start[b] : A + 2;
       const PetscReal along = B[1 - d] + (last ? span[1 - d] : 0) - A[1 - d];
       PetscReal x = X[1 - d] - A[1 - d], off;

@@ -128,7 +128,7 @@ static void ObstaclePlaceInLattice(Scene scene, PetscInt k, PetscReal center[2])
 static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines *o) {
   const SceneObstacles *own = &scene->obstacles;
   const PetscReal *packed = own->shape == OBSTACLE_POSTS ? own->posts.packed : NULL;
-  const PetscBool lattice = own->posts.lattice.n == 2 && own->posts.lattice.v[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool lattice = own->posts.lattice.n == 2 && own->posts.lattice.v[0] > 0;
   PetscFunctionBeginUser;
   o->count = count;
   PetscCall(PetscCalloc1(count, &o->of));
@@ -236,7 +236,7 @@ static PetscErrorCode ObstaclesCreateShape(Scene scene, const Outlines *o, Shape
   PetscCall(PetscMalloc2(o->count, &markers, o->count, &kind));
   for (PetscInt k = 0; k < o->count; k++) {
     const Outline *one = &o->of[k];
-    const PetscBool open = one->curve.kind.type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool open = one->curve.kind.type == CURVE_OPEN;
     const PetscReal length = open ? CurvePartLength(&one->curve, one->part[0], one->part[1]) : CurveLength(&one->curve);
     const PetscReal wanted = length / spacing;
     PetscCheck(all + wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
@@ -257,7 +257,7 @@ static PetscErrorCode ObstaclesCreateShape(Scene scene, const Outlines *o, Shape
 static PetscErrorCode ObstaclesChooseFactor(Scene scene, const Outlines *o, SceneObstacles *own) {
   const FluidSpec *f = &scene->fluid;
   const PetscInt markers = own->outline.start[o->count];
-  const PetscBool periodic = f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool periodic = f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC;
   /* modes know neither walls that obstacles stand on nor unbounded fluid */
   const PetscBool free = !strcmp(own->free.which, "all") && !FluidSpecIsFree(f);
   const PetscBool many = free ? markers > MOST_FREE : periodic && markers > MOST_TOGETHER;
@@ -282,7 +282,7 @@ static PetscErrorCode ObstaclesPlaceMarkers(Scene scene, const Outlines *o, Scen
   PetscCall(PetscMalloc2(scene->shape.vesicles + o->count, &own->holder, o->count, &own->vesicle));
   PetscCall(PetscCalloc5(2 * o->count, &own->velocity, o->count, &own->turn, o->count, &own->container, o->count,
                          &own->wall, o->count, &own->free.is));
-  own->circles = own->shape == OBSTACLE_POSTS || own->shape == OBSTACLE_COUETTE ? PETSC_TRUE : PETSC_FALSE;
+  own->circles = own->shape == OBSTACLE_POSTS || own->shape == OBSTACLE_COUETTE;
   for (PetscInt k = 0; k < o->count; k++) {
     const Outline *one = &o->of[k];
     const PetscInt n = shape->start[k + 1] - shape->start[k];

@@ -85,7 +85,7 @@ static PetscErrorCode PackedCheckRoom(Scene s, PetscInt vesicles, PetscReal gap,
 static PetscErrorCode ScenePack(Draft scene, const Kinds *kinds, PetscInt posts, Pose pose[]) {
   const SceneVesicles *own = &scene->vesicles;
   const PetscInt n = kinds->vesicles, all = n + posts;
-  const PetscBool lattice = own->packing_type == PACKING_LATTICE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool lattice = own->packing_type == PACKING_LATTICE;
   const PetscReal cells = scene->coupling.near_field == NEAR_EXACT ? KERNEL_FOLDED_CELLS : KERNEL_WALL_CELLS;
   const PetscReal wall = (cells + LEEWAY) * FluidSpecCellSize(&scene->fluid);
   PackingSpec spec = {.seed = own->packing_seed};
@@ -97,7 +97,7 @@ static PetscErrorCode ScenePack(Draft scene, const Kinds *kinds, PetscInt posts,
   PetscCall(PackedGap(scene, kinds, &spec.gap));
   spec.wall_gap = PetscMax(spec.gap, wall);
   PetscCall(PetscArraycpy(spec.box, scene->fluid.box, 4));
-  for (int d = 0; d < 2; d++) spec.periodic[d] = scene->fluid.bc[d] == BC_PERIODIC ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 2; d++) spec.periodic[d] = scene->fluid.bc[d] == BC_PERIODIC;
   PetscCall(PetscMalloc2(2 * all, &axes, all, &packed));
   for (PetscInt v = 0; v < n; v++) PetscCall(PetscArraycpy(axes + 2 * v, kinds->kind[kinds->of[v]].curve.axes, 2));
   for (PetscInt k = 0; k < 2 * posts; k++) axes[2 * n + k] = ListEntry(&scene->obstacles.radius, 1, k / 2, 0);

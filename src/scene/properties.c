@@ -13,15 +13,14 @@ CurveRoom SceneRoom(Scene scene) {
   CurveRoom room;
   for (int k = 0; k < 4; k++) room.box[k] = f->box[k];
   FluidSpecPeriods(f, room.period);
-  for (int d = 0; d < 2; d++) room.wall[d] = f->bc[d] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 2; d++) room.wall[d] = f->bc[d] == BC_WALL;
   return room;
 }
 
 PetscBool SceneByArea(Scene scene) {
   const PetscBool packed = scene->vesicles.packing > 0 && !SceneGiven(scene, "-vesicle_semi_axes");
   if (scene->vesicles.shape == SHAPE_BICONCAVE) return PETSC_TRUE;
-  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") || packed ? PETSC_TRUE
-                                                                                                    : PETSC_FALSE;
+  return SceneGiven(scene, "-vesicle_area") || SceneGiven(scene, "-vesicle_reduced_area") || packed;
 }
 
 PetscBool SceneHasGravity(Scene scene) {
@@ -47,12 +46,12 @@ PetscReal SceneViscosityRatio(Scene scene, PetscInt v) {
 
 PetscBool SceneIsProjection(Scene scene) {
   const char *const name = scene->scheme.type;
-  return !strcmp(name, "split") || !strcmp(name, "penalty") ? PETSC_TRUE : PETSC_FALSE;
+  return !strcmp(name, "split") || !strcmp(name, "penalty");
 }
 
 PetscBool SceneHasAreaTarget(Scene scene) {
   const PetscBool papers = scene->membrane.derivative == DERIVATIVE_FD || SceneIsProjection(scene);
-  return scene->shape.vesicles && !papers && scene->membrane.permeability == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return scene->shape.vesicles && !papers && scene->membrane.permeability == 0;
 }
 
 PetscBool SceneHasBoxPart(Scene scene) {

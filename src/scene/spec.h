@@ -135,7 +135,7 @@ typedef struct {
 
 /* SceneObstaclesMove - whether a curve may be where it was not at time 0. Not collective. */
 static inline PetscBool SceneObstaclesMove(const SceneObstacles *obstacles) {
-  return obstacles->moving || obstacles->free.count ? PETSC_TRUE : PETSC_FALSE;
+  return obstacles->moving || obstacles->free.count;
 }
 
 /* Passive points, src/plane/tracers.h. */

@@ -7,49 +7,48 @@
 #define AT(member) offsetof(struct _p_Scene, member)
 
 static PetscBool HasVesicles(const void *scene) {
-  return ((Scene)scene)->shape.vesicles > 0 || ((Scene)scene)->dim == DIM_SPACE ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->shape.vesicles > 0 || ((Scene)scene)->dim == DIM_SPACE;
 }
 
 static PetscBool HasBodies(const void *scene) {
-  return HasVesicles(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE ? PETSC_TRUE : PETSC_FALSE;
+  return HasVesicles(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE;
 }
 
 static PetscBool IsPacked(const void *scene) {
   const SceneVesicles *vesicles = &((Scene)scene)->vesicles;
-  return vesicles->shape == SHAPE_ELLIPSE && vesicles->packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return vesicles->shape == SHAPE_ELLIPSE && vesicles->packing > 0;
 }
 
 static PetscBool IsPackedRandomly(const void *scene) {
-  return IsPacked(scene) && ((Scene)scene)->vesicles.packing_type == PACKING_RANDOM ? PETSC_TRUE : PETSC_FALSE;
+  return IsPacked(scene) && ((Scene)scene)->vesicles.packing_type == PACKING_RANDOM;
 }
 
 static PetscBool HasCenters(const void *scene) {
-  return HasVesicles(scene) && !IsPacked(scene) ? PETSC_TRUE : PETSC_FALSE;
+  return HasVesicles(scene) && !IsPacked(scene);
 }
 
 static PetscBool HasAngles(const void *scene) {
-  return HasVesicles(scene) && !IsPackedRandomly(scene) ? PETSC_TRUE : PETSC_FALSE;
+  return HasVesicles(scene) && !IsPackedRandomly(scene);
 }
 
 static PetscBool IsCoupled(const void *scene) {
-  return HasVesicles(scene) && !strcmp(((Scene)scene)->scheme.type, "coupled") ? PETSC_TRUE : PETSC_FALSE;
+  return HasVesicles(scene) && !strcmp(((Scene)scene)->scheme.type, "coupled");
 }
 
 static PetscBool HasFreeBodies(const void *scene) {
-  return *((Scene)scene)->obstacles.free.which ? PETSC_TRUE : PETSC_FALSE;
+  return *((Scene)scene)->obstacles.free.which != 0;
 }
 
 static PetscBool HasRepulsion(const void *scene) {
-  return (HasVesicles(scene) || HasFreeBodies(scene)) && ((Scene)scene)->repulsion.stress > 0 ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+  return (HasVesicles(scene) || HasFreeBodies(scene)) && ((Scene)scene)->repulsion.stress > 0;
 }
 
 static PetscBool HasAdhesion(const void *scene) {
-  return ((Scene)scene)->repulsion.adhesion > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->repulsion.adhesion > 0;
 }
 
 static PetscBool HasPotential(const void *scene) {
-  return ((Scene)scene)->potential.strength > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return ((Scene)scene)->potential.strength > 0;
 }
 
 static PetscBool HasSolidCenters(const void *scene) {
@@ -59,30 +58,30 @@ static PetscBool HasSolidCenters(const void *scene) {
 }
 
 static PetscBool HasHeavy(const void *scene) {
-  return HasFreeBodies(scene) || IsCoupled(scene) ? PETSC_TRUE : PETSC_FALSE;
+  return HasFreeBodies(scene) || IsCoupled(scene);
 }
 
 /* The 0 that stands for no springs is right for all schemes. */
 static PetscBool HasSprings(const void *scene) {
   const SceneScheme *scheme = &((Scene)scene)->scheme;
-  return scheme->stiffness == 0 || (HasVesicles(scene) && !strcmp(scheme->type, "penalty")) ? PETSC_TRUE : PETSC_FALSE;
+  return scheme->stiffness == 0 || (HasVesicles(scene) && !strcmp(scheme->type, "penalty"));
 }
 
 static PetscBool IsAdaptable(const void *scene) {
   const Scene s = (Scene)scene;
-  return HasVesicles(s) || s->obstacles.free.count || s->time.adapt == ADAPT_NONE ? PETSC_TRUE : PETSC_FALSE;
+  return HasVesicles(s) || s->obstacles.free.count || s->time.adapt == ADAPT_NONE;
 }
 
 /* The 0 that stands for no difference is right for all scenes. */
 static PetscBool HasWeight(const void *scene) {
   const RealList *density = &((Scene)scene)->gravity.density;
-  const PetscBool none = density->n == 1 && density->v[0] == 0 ? PETSC_TRUE : PETSC_FALSE;
-  return none || (HasVesicles(scene) && SceneHasGravity((Scene)scene)) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool none = density->n == 1 && density->v[0] == 0;
+  return none || (HasVesicles(scene) && SceneHasGravity((Scene)scene));
 }
 
 static PetscBool IsChannel(const void *scene) {
   const PetscInt *bc = ((Scene)scene)->fluid.bc;
-  return bc[0] == BC_PERIODIC && bc[1] == BC_WALL ? PETSC_TRUE : PETSC_FALSE;
+  return bc[0] == BC_PERIODIC && bc[1] == BC_WALL;
 }
 
 #define IS(value) (1u << (value))
@@ -285,7 +284,7 @@ const OptionRow *SceneOptionRow(PetscInt i) {
 PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
   /* what one launch was asked to do with an earlier run's files is no part of the run; both descriptions of the
      ellipse, or of the flow, would be refused when read back */
-  const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool by_area = SceneByArea(scene), packed = scene->vesicles.packing > 0;
   const PetscBool counted = SceneGiven(scene, "-vesicle_count");
   const char *skip[12] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca", "-flow_ca_stretching"};
   PetscInt skipped = 5;

@@ -114,7 +114,7 @@ static PetscErrorCode KindFitRest(Scene scene, PetscBool spectral, Kind *kind) {
 }
 
 PetscErrorCode KindFit(Scene scene, Kind *kind) {
-  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool spectral = scene->membrane.derivative == DERIVATIVE_SPECTRAL;
   PetscFunctionBeginUser;
   PetscCall(KindMarkerCount(scene, kind, spectral, &kind->M));
   PetscCall(KindFitCurve(&kind->curve, kind->length, kind->area, spectral, kind->M, &kind->X));

@@ -93,7 +93,7 @@ static PetscErrorCode VesiclesFindWithin(const Shape *s, const PetscReal period[
 /* clang-format off */
 /* No vesicle crosses another, an image of one or itself, nor lies within another. */
 static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
-  const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool smooth = scene->membrane.derivative == DERIVATIVE_SPECTRAL;
   PetscReal period[2];
   PetscInt pair[2];
   PetscFunctionBeginUser;

@@ -15,9 +15,7 @@ static PetscErrorCode ViewRange(PetscViewer v, const char what[], PetscReal low,
 static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
   static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
   const PetscBool no_mean = scene->fluid.inertia == INERTIA_NONE && scene->fluid.bc[0] == BC_PERIODIC &&
-                                    scene->fluid.bc[1] == BC_PERIODIC
-                                ? PETSC_TRUE
-                                : PETSC_FALSE;
+                            scene->fluid.bc[1] == BC_PERIODIC;
   PetscReal low = PETSC_MAX_REAL, high = 0;
   char model[SCENE_MODEL];
   PetscFunctionBeginUser;
@@ -44,7 +42,7 @@ static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
 static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
   static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "uniform", "custom", "formula"};
   const PetscInt type = scene->flow.type;
-  const PetscBool channel = type == FLOW_POISEUILLE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool channel = type == FLOW_POISEUILLE;
   const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI), c_b = scene->membrane.bending;
   const PetscReal time = c_b > 0 ? scene->fluid.nu * PetscPowRealInt(R0, 3) / c_b : 0;
   const PetscReal value = channel ? scene->flow.peak : scene->flow.rate;
