@@ -27,6 +27,18 @@ void XdmfPrintSlab(FILE *f, const char before[], const XdmfSlab *s) {
           s->name);
 }
 
+void XdmfPrintAttribute(FILE *f, const char name[], const char type[], const char before[], const XdmfSlab *s) {
+  fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">\n", name, type);
+  XdmfPrintSlab(f, before, s);
+  fprintf(f, "</Attribute>");
+}
+
+void XdmfPrintWhole(FILE *f, PetscInt n, PetscInt columns, const char group[], const char name[]) {
+  fprintf(f,
+          "<DataItem Dimensions=\"%d%s\" NumberType=\"Int\" Precision=\"%d\" Format=\"HDF\">run.h5:/%s/%s</DataItem>",
+          (int)n, columns == 3 ? " 3" : "", (int)sizeof(PetscInt), group, name);
+}
+
 static PetscErrorCode PrintEmpty(FILE *f, const void *none) {
   fprintf(f, XDMF_OPENING XDMF_CLOSING);
   return PETSC_SUCCESS;

@@ -31,8 +31,14 @@ typedef struct {
   PetscInt width; /* columns of an entry; 0: an entry is a list */
 } XdmfSlab;
 
-/* XdmfPrintSlab - a slab as an XDMF item with the dimensions before, n, columns. Not collective. */
+/* XdmfPrintSlab - a slab as an XDMF item with the dimensions before, n, columns. XdmfPrintAttribute - a slab as an
+   attribute of the grid's points, of the type "Scalar" or "Vector". XdmfPrintWhole - the dataset
+   /group/name of n whole numbers, or of n triangles (columns 3), the same for all frames, as an item. Not collective.
+ */
 PETSC_EXTERN void XdmfPrintSlab(FILE *file, const char before[], const XdmfSlab *slab);
+PETSC_EXTERN void XdmfPrintAttribute(FILE *file, const char name[], const char type[], const char before[],
+                                     const XdmfSlab *slab);
+PETSC_EXTERN void XdmfPrintWhole(FILE *file, PetscInt n, PetscInt columns, const char group[], const char name[]);
 
 /* XdmfClose - close the file; whether all of it was written, TRUE on ranks other than 0. Not collective. */
 PETSC_EXTERN PetscBool XdmfClose(Xdmf *xdmf);

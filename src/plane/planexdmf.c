@@ -24,41 +24,32 @@ static void PrintFluid(Grid g, FILE *f, PetscInt t, int bytes) {
           (double)(g->lo[1] + g->h / 2), (double)(g->lo[0] + g->h / 2));
   fprintf(f, "<DataItem Dimensions=\"3\">%.17g %.17g %.17g</DataItem></Geometry>\n", (double)g->h, (double)g->h,
           (double)g->h);
-  fprintf(f, "<Attribute Name=\"pressure\" AttributeType=\"Scalar\" Center=\"Node\">\n");
-  XdmfPrintSlab(f, "1 ", &p);
-  fprintf(f, "</Attribute>\n");
+  XdmfPrintAttribute(f, "pressure", "Scalar", "1 ", &p);
+  fprintf(f, "\n");
   PrintVector(f, "velocity", dims, "1 ", (XdmfSlab[]){u, v});
   fprintf(f, "</Grid>\n");
-}
-
-/* Print a list of whole numbers of run.h5. */
-static void PrintWhole(FILE *f, PetscInt n, const char kind[], const char name[]) {
-  fprintf(f, "<DataItem Dimensions=\"%d\" NumberType=\"Int\" Precision=\"%d\" Format=\"HDF\">run.h5:/%s/%s</DataItem>",
-          (int)n, (int)sizeof(PetscInt), kind, name);
 }
 
 /* Print the lines through the markers of all bodies of a kind, up to the beginning of their geometry. */
 static void PrintLines(FILE *f, const char kind[], Layout l, PetscInt closed) {
   fprintf(f, "<Grid Name=\"%s\" GridType=\"Uniform\"><Topology TopologyType=\"Mixed\" NumberOfElements=\"%d\">", kind,
           (int)l->bodies);
-  PrintWhole(f, l->M + 2 * l->bodies + closed, kind, "lines");
+  XdmfPrintWhole(f, l->M + 2 * l->bodies + closed, 1, kind, "lines");
   fprintf(f, "</Topology>\n<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Cell\">", kind);
-  PrintWhole(f, l->bodies, kind, "number");
+  XdmfPrintWhole(f, l->bodies, 1, kind, "number");
   fprintf(f, "</Attribute>\n<Geometry GeometryType=\"XY\">\n");
 }
 
 static void PrintVesicles(FILE *f, PetscInt t, Membrane m, PetscBool wrapped) {
   const Layout l = m->layout;
   const XdmfSlab markers = {wrapped ? "/vesicle/wrapped" : "/vesicle/markers", 8, t, l->M, 0, 2, 2};
-  const XdmfSlab edges[] = {{"/vesicle/tension", 8, t, l->M, 0, 1, 0}, {"/vesicle/stretch", 8, t, l->M, 0, 1, 0}};
+  const XdmfSlab tension = {"/vesicle/tension", 8, t, l->M, 0, 1, 0},
+                 stretch = {"/vesicle/stretch", 8, t, l->M, 0, 1, 0};
   PrintLines(f, "vesicle", l, l->bodies);
   XdmfPrintSlab(f, "", &markers);
   fprintf(f, "</Geometry>\n");
-  for (int k = 0; k < (m->stretches ? 2 : 1); k++) {
-    fprintf(f, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"Node\">\n", k ? "stretch" : "tension");
-    XdmfPrintSlab(f, "", &edges[k]);
-    fprintf(f, "</Attribute>");
-  }
+  XdmfPrintAttribute(f, "tension", "Scalar", "", &tension);
+  if (m->stretches) XdmfPrintAttribute(f, "stretch", "Scalar", "", &stretch);
   fprintf(f, "</Grid>\n");
 }
 

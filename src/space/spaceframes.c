@@ -121,19 +121,14 @@ void SpacePrint(const void *model, FILE *f, PetscInt t, PetscReal time) {
                  tension = {"/vesicle/tension", 8, t, points, 0, 1, 0};
   fprintf(f, "<Grid Name=\"frame %d\" GridType=\"Uniform\"><Time Value=\"%.17g\"/>\n", (int)t, (double)time);
   fprintf(f, "<Topology TopologyType=\"Triangle\" NumberOfElements=\"%d\">", (int)triangles);
-  fprintf(f,
-          "<DataItem Dimensions=\"%d 3\" NumberType=\"Int\" Precision=\"%d\" "
-          "Format=\"HDF\">run.h5:/vesicle/triangles</DataItem></Topology>\n",
-          (int)triangles, (int)sizeof(PetscInt));
-  fprintf(f,
-          "<Attribute Name=\"vesicle\" AttributeType=\"Scalar\" Center=\"Cell\"><DataItem Dimensions=\"%d\" "
-          "NumberType=\"Int\" Precision=\"%d\" Format=\"HDF\">run.h5:/vesicle/number</DataItem></Attribute>\n",
-          (int)triangles, (int)sizeof(PetscInt));
-  fprintf(f, "<Geometry GeometryType=\"XYZ\">\n");
+  XdmfPrintWhole(f, triangles, 3, "vesicle", "triangles");
+  fprintf(f, "</Topology>\n<Attribute Name=\"vesicle\" AttributeType=\"Scalar\" Center=\"Cell\">");
+  XdmfPrintWhole(f, triangles, 1, "vesicle", "number");
+  fprintf(f, "</Attribute>\n<Geometry GeometryType=\"XYZ\">\n");
   XdmfPrintSlab(f, "", &place);
-  fprintf(f, "</Geometry>\n<Attribute Name=\"tension\" AttributeType=\"Scalar\" Center=\"Node\">\n");
-  XdmfPrintSlab(f, "", &tension);
-  fprintf(f, "</Attribute>\n<Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">\n");
-  XdmfPrintSlab(f, "", &velocity);
-  fprintf(f, "</Attribute></Grid>\n");
+  fprintf(f, "</Geometry>\n");
+  XdmfPrintAttribute(f, "tension", "Scalar", "", &tension);
+  fprintf(f, "\n");
+  XdmfPrintAttribute(f, "velocity", "Vector", "", &velocity);
+  fprintf(f, "</Grid>\n");
 }
