@@ -1,6 +1,4 @@
-#define _GNU_SOURCE /* memfd_create */
 #include "output/h5.h"
-#include <sys/mman.h>
 #include <unistd.h>
 
 /* HDF5's drivers belong to the whole program, and their calls have no context. */
@@ -79,19 +77,9 @@ void H5FileFlush(H5File *f) {
   if (!f->rank) H5Try(f, H5Fflush(f->id, H5F_SCOPE_GLOBAL));
 }
 
-/* HDF5 cannot give up a file whose disk is full: closing the file fails, and the library crashes at the program's end.
-   So what HDF5 still wants to write to a failed file goes into memory. */
-static void FileToMemory(hid_t file) {
-  void *handle;
-  const int memory = memfd_create("petves", 0);
-  if (memory >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0) (void)dup2(memory, *(int *)handle);
-  if (memory >= 0) (void)close(memory);
-}
-
 void H5FileClose(H5File *f) {
   if (f->id < 0) return;
   if (H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 || H5WriteLost()) f->failed = PETSC_TRUE;
-  if (f->failed) FileToMemory(f->id);
   if (H5Fclose(f->id) < 0 || H5WriteLost()) f->failed = PETSC_TRUE;
   f->id = -1;
 }
