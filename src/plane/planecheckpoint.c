@@ -173,9 +173,9 @@ static PetscErrorCode RestartLevel(Scheme s, H5File *file, PetscInt *level) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The present state and those before it. dt_earlier: the steps that led to the earlier states; to each but the first
-   state of a run there was one. */
-static PetscErrorCode RestartState(Scheme s, H5File *file, SchemeTimes *times) {
+/* Take the times of the states. dt_earlier: the steps that led to the earlier ones; to each but the first state of a
+   run there was one. */
+static PetscErrorCode RestartTimes(Scheme s, H5File *file, SchemeTimes *times) {
   PetscFunctionBeginUser;
   PetscCall(RestartLevel(s, file, &times->plan.level));
   SchemeSetTimes(s, times);
@@ -185,42 +185,43 @@ static PetscErrorCode RestartState(Scheme s, H5File *file, SchemeTimes *times) {
                 "-restart %s: its dt_earlier is %g; allowed: a step above 0, as petves writes it",
                 s->scene->output.restart, (double)dt);
   }
-  for (PetscInt j = 0; j <= s->past; j++) {
-    PetscCall(CheckpointVectors(file, PETSC_FALSE, s, j));
-    PetscCall(RestartVectors(s, j ? &s->old[j - 1] : &s->state));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PlaneWriteCheckpoint(Plane p, H5File *file, PetscInt frames, PetscReal memory[]) {
-  const Scheme s = p->scheme;
+static SchemeTimes CheckpointTimes(Scheme s) {
   const State *q = &s->state;
   SchemeTimes times = {.step = q->step, .past = s->past, .t = q->t, .dt = q->dt, .dt_last = q->dt_last};
-  PetscFunctionBeginUser;
-  PetscCall(SchemeFields(s));
   times.plan = (StepPlan){
       .level = s->policy.adaptive ? s->plan.level : 0, .order = s->plan.order, .guess = s->plan.guess};
   for (PetscInt j = 0; j < s->past; j++) times.dt_earlier[j] = s->old[j].dt_last;
-  PetscCall(CheckpointNumbers(file, PETSC_TRUE, &times, p->totals, &frames));
-  PetscCall(CheckpointPutVesicles(s, file));
-  for (PetscInt j = 0; j <= s->past; j++) PetscCall(CheckpointVectors(file, PETSC_TRUE, s, j));
-  PetscCall(CheckpointTracers(file, PETSC_TRUE, p));
-  PetscCall(SchemeRemember(s, memory));
-  PetscCall(CheckpointEntry(file, PETSC_TRUE, "/solver", SchemeMemorySize(s), 1, memory));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return times;
 }
 
-static PetscErrorCode PlaneReadCheckpoint(Plane p, H5File *file, PetscInt *frames, PetscReal memory[]) {
+/* Write or read everything; memory[]: what the solvers have kept from earlier steps. */
+static PetscErrorCode CheckpointMoveAll(Plane p, H5File *file, PetscBool write, PetscInt *frames, PetscReal memory[]) {
   const Scheme s = p->scheme;
   const PetscInt numbers = SchemeMemorySize(s);
   SchemeTimes times = {.plan = {.order = 1, .guess = 1}}; /* allowed, where nothing can be read */
   PetscFunctionBeginUser;
-  PetscCall(CheckpointNumbers(file, PETSC_FALSE, &times, p->totals, frames));
-  PetscCall(RestartEntries(s->scene, file));
-  PetscCall(RestartFiles(s->scene, file));
-  PetscCall(RestartState(s, file, &times));
-  PetscCall(CheckpointTracers(file, PETSC_FALSE, p));
-  PetscCall(CheckpointEntry(file, PETSC_FALSE, "/solver", numbers, 1, memory));
+  if (write) {
+    PetscCall(SchemeFields(s));
+    PetscCall(SchemeRemember(s, memory));
+    PetscCall(CheckpointPutVesicles(s, file));
+    times = CheckpointTimes(s);
+  }
+  PetscCall(CheckpointNumbers(file, write, &times, p->totals, frames));
+  if (!write) {
+    PetscCall(RestartEntries(s->scene, file));
+    PetscCall(RestartFiles(s->scene, file));
+    PetscCall(RestartTimes(s, file, &times));
+  }
+  for (PetscInt j = 0; j <= s->past; j++) {
+    PetscCall(CheckpointVectors(file, write, s, j));
+    if (!write) PetscCall(RestartVectors(s, j ? &s->old[j - 1] : &s->state));
+  }
+  PetscCall(CheckpointTracers(file, write, p));
+  PetscCall(CheckpointEntry(file, write, "/solver", numbers, 1, memory));
+  if (write) PetscFunctionReturn(PETSC_SUCCESS);
   CheckpointFinite(file, numbers, memory);
   PetscCall(RestartEntries(s->scene, file));
   PetscCall(SchemeRecall(s, memory));
@@ -229,11 +230,11 @@ static PetscErrorCode PlaneReadCheckpoint(Plane p, H5File *file, PetscInt *frame
 
 PetscErrorCode PlaneCheckpoint(void *plane, H5File *file, PetscBool write, PetscInt *frames) {
   const Plane p = plane;
-  PetscReal *memory; /* what the solvers have kept from earlier steps */
+  PetscReal *memory;
   PetscErrorCode error;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(SchemeMemorySize(p->scheme), &memory));
-  error = write ? PlaneWriteCheckpoint(p, file, *frames, memory) : PlaneReadCheckpoint(p, file, frames, memory);
+  error = CheckpointMoveAll(p, file, write, frames, memory);
   PetscCall(PetscFree(memory));
   PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);
