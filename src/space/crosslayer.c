@@ -3,9 +3,6 @@
 #include "base/lanes.h"
 #include "sphere/surface.h"
 
-#define FINENESS 2.5 /* degree of a grid, over p times spacing over gap */
-static const PetscReal finer[CROSS_LEVELS] = {1, 1.5, 2, 3, 4, 6, 9};
-
 PetscErrorCode ShareGather(const VesicleShare *s, PetscInt each, const PetscReal own[], PetscReal all[]) {
   PetscMPIInt n;
   PetscFunctionBeginUser;
@@ -30,7 +27,17 @@ PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu,
   c->sphere = sphere;
   c->share = share;
   c->nu = nu;
-  PetscCall(PetscMalloc2(share.vesicles * 3 * sphere->count, &c->X, share.own * (share.vesicles - 1), &c->pair));
+  PetscCall(PetscMalloc3(share.vesicles * 3 * sphere->count, &c->X, share.vesicles * 3 * sphere->shape.grid.n,
+                         &c->points, share.own * share.vesicles, &c->pair));
+  PetscCall(NearTablesCreate(&c->tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* No pair is near. */
+static PetscErrorCode CrossForgetPairs(CrossLayer c) {
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->pairs; k++) PetscCall(NearPairDestroy(&c->pair[k].near));
+  c->pairs = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -38,11 +45,9 @@ PetscErrorCode CrossLayerDestroy(CrossLayer *cross) {
   CrossLayer c = *cross;
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int level = 0; level < CROSS_LEVELS; level++) {
-    PetscCall(PetscFree(c->points[level]));
-    if (c->table[level].part[0]) PetscCall(SphereTableDestroy(&c->table[level]));
-  }
-  PetscCall(PetscFree2(c->X, c->pair));
+  PetscCall(CrossForgetPairs(c));
+  PetscCall(NearTablesDestroy(&c->tables));
+  PetscCall(PetscFree3(c->X, c->points, c->pair));
   PetscCall(PetscFree(*cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -51,7 +56,7 @@ PetscErrorCode CrossLayerDestroy(CrossLayer *cross) {
 typedef struct {
   PetscReal *X, *normal; /* [3][n] points of the fine grid, unit normals */
   PetscReal center[3], radius;
-  PetscReal spacing; /* on the grid of degree p */
+  PetscReal spacing; /* the largest one of the grid of degree p */
 } Outline;
 
 static PetscErrorCode OutlineMake(CrossLayer c, Surface s, PetscInt v, Outline *o) {
@@ -60,25 +65,32 @@ static PetscErrorCode OutlineMake(CrossLayer c, Surface s, PetscInt v, Outline *
   PetscCall(PetscMalloc2(3 * s->n, &o->X, 3 * s->n, &o->normal));
   PetscCall(PetscArraycpy(o->X, s->D[HARMONIC], 3 * s->n));
   PetscCall(PetscArraycpy(o->normal, s->normal, 3 * s->n));
-  o->spacing = PetscSqrtReal(s->area / (PetscReal)c->sphere->shape.grid.n);
   for (int d = 0; d < 3; d++) o->center[d] = c->X[(v * 3 + d) * c->sphere->count] / PetscSqrtReal(4 * PETSC_PI);
-  o->radius = 0;
+  o->radius = o->spacing = 0;
   for (PetscInt i = 0; i < s->n; i++) {
-    PetscReal r2 = 0;
-    for (int d = 0; d < 3; d++) r2 += PetscSqr(o->X[d * s->n + i] - o->center[d]);
+    PetscReal r2 = 0, along[2] = {0, 0};
+    for (int d = 0; d < 3; d++) {
+      r2 += PetscSqr(o->X[d * s->n + i] - o->center[d]);
+      along[0] += PetscSqr(s->D[HARMONIC_T][d * s->n + i]);
+      along[1] += PetscSqr(s->D[HARMONIC_P][d * s->n + i]);
+    }
     o->radius = PetscMax(o->radius, PetscSqrtReal(r2));
+    o->spacing = PetscMax(o->spacing, PetscSqrtReal(PetscMax(along[0], along[1])) * PETSC_PI / (c->sphere->p + 1));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The gap of two surfaces: at the nearest points of their fine grids, along the normal; negative where they overlap. Of
-   surfaces so far apart that it does not matter, the gap of the balls around them. */
-static PetscReal OutlineGap(PetscInt n, const Outline *a, const Outline *b) {
-  PetscReal least = PETSC_MAX_REAL, apart = 0;
-  PetscInt at[2] = {0, 0};
+/* Distance of the balls around two surfaces. */
+static PetscReal OutlineApart(const Outline *a, const Outline *b) {
+  PetscReal apart = 0;
   for (int d = 0; d < 3; d++) apart += PetscSqr(a->center[d] - b->center[d]);
-  apart = PetscSqrtReal(apart) - a->radius - b->radius;
-  if (apart > FINENESS * PetscMax(a->spacing, b->spacing)) return apart;
+  return PetscSqrtReal(apart) - a->radius - b->radius;
+}
+
+/* The gap of two surfaces: at the nearest points of their fine grids, along the normal; negative where they overlap. */
+static PetscReal OutlineGap(PetscInt n, const Outline *a, const Outline *b) {
+  PetscReal least = PETSC_MAX_REAL;
+  PetscInt at[2] = {0, 0};
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 0; j < n; j++) {
       const PetscReal x = a->X[i] - b->X[j], y = a->X[n + i] - b->X[n + j], z = a->X[2 * n + i] - b->X[2 * n + j],
@@ -97,13 +109,12 @@ static PetscReal OutlineGap(PetscInt n, const Outline *a, const Outline *b) {
   return PetscMin(along[0], along[1]);
 }
 
-/* Which level a pair has: the first that is fine enough. */
-static PetscInt CrossLevel(PetscInt p, PetscReal spacing, PetscReal gap) {
-  PetscInt level = 0;
-  while (level < CROSS_LEVELS - 1 && finer[level] * gap < FINENESS * spacing) level++;
-  return level;
+static PetscBool ShareOwns(const VesicleShare *s, PetscInt v) {
+  return (PetscBool)(v >= s->first && v < s->first + s->own);
 }
 
+/* The least gap of the own surfaces, and the pairs that are near. Of surfaces so far apart that it does not matter the
+   gap is that of the balls around them. */
 static PetscErrorCode CrossFindPairs(CrossLayer c) {
   const VesicleShare *s = &c->share;
   Outline *outline;
@@ -112,18 +123,20 @@ static PetscErrorCode CrossFindPairs(CrossLayer c) {
   PetscCall(PetscMalloc1(s->vesicles, &outline));
   PetscCall(SurfaceCreate(c->sphere, &surface));
   for (PetscInt v = 0; v < s->vesicles; v++) PetscCall(OutlineMake(c, surface, v, &outline[v]));
-  c->pairs = 0;
   c->gap = PETSC_MAX_REAL;
-  for (PetscInt v = s->first; v < s->first + s->own; v++)
-    for (PetscInt w = 0; w < s->vesicles; w++) {
-      if (w == v) continue;
-      const PetscReal gap = OutlineGap(surface->n, &outline[PetscMin(v, w)], &outline[PetscMax(v, w)]);
+  for (PetscInt v = 0; v < s->vesicles; v++)
+    for (PetscInt w = v + 1; w < s->vesicles; w++) {
       const PetscReal spacing = PetscMax(outline[v].spacing, outline[w].spacing);
-      c->pair[c->pairs++] = (CrossPair){v - s->first, w, CrossLevel(c->sphere->p, spacing, gap)};
+      PetscReal gap = OutlineApart(&outline[v], &outline[w]);
+      if (!ShareOwns(s, v) && !ShareOwns(s, w)) continue;
+      if (gap <= NearReach(spacing)) {
+        gap = OutlineGap(surface->n, &outline[v], &outline[w]);
+        c->pair[c->pairs++] = (CrossPair){.surface = {v, w}, .spacing = spacing};
+      }
       if (gap >= c->gap) continue;
       c->gap = gap;
-      c->nearest[0] = PetscMin(v, w);
-      c->nearest[1] = PetscMax(v, w);
+      c->nearest[0] = v;
+      c->nearest[1] = w;
     }
   for (PetscInt v = 0; v < s->vesicles; v++) PetscCall(PetscFree2(outline[v].X, outline[v].normal));
   PetscCall(SurfaceDestroy(&surface));
@@ -142,21 +155,24 @@ static PetscErrorCode CrossAgreeGap(CrossLayer c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
-  const PetscInt size = 3 * c->sphere->count;
+PetscErrorCode CrossLayerMeasure(CrossLayer c, const PetscReal X[]) {
   PetscFunctionBeginUser;
-  PetscCall(ShareGather(&c->share, size, X, c->X));
+  PetscCall(CrossForgetPairs(c));
+  PetscCall(ShareGather(&c->share, 3 * c->sphere->count, X, c->X));
   PetscCall(CrossFindPairs(c));
   PetscCall(CrossAgreeGap(c));
-  for (int level = 0; level < CROSS_LEVELS; level++) PetscCall(PetscFree(c->points[level]));
-  for (PetscInt k = 0; k < c->pairs; k++) {
-    const PetscInt level = c->pair[k].level;
-    SphereTable *table = &c->table[level];
-    if (!table->part[0]) PetscCall(SphereTableCreate(c->sphere->p, (PetscInt)(finer[level] * c->sphere->p), 1, table));
-    if (c->points[level]) continue;
-    PetscCall(PetscMalloc1(c->share.vesicles * 3 * table->grid.n, &c->points[level]));
-    PetscCall(SphereTableValues(table, HARMONIC, c->sphere->count, 3 * c->share.vesicles, c->X, c->points[level]));
-  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
+  const PetscInt count = c->sphere->count;
+  PetscFunctionBeginUser;
+  PetscCall(CrossLayerMeasure(c, X));
+  if (c->gap <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SphereTableValues(&c->sphere->shape, HARMONIC, count, 3 * c->share.vesicles, c->X, c->points));
+  for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++)
+    PetscCall(NearPairCreate(c->sphere, &c->tables, pair->spacing, c->X + pair->surface[0] * 3 * count,
+                             c->X + pair->surface[1] * 3 * count, &pair->near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,40 +200,46 @@ static void CrossAddStokeslets(PetscInt n, const PetscReal X[], const PetscReal 
   }
 }
 
-/* U += what the pairs of one level do. */
-static PetscErrorCode CrossAddLevel(CrossLayer c, PetscInt level, const PetscReal F[], PetscReal U[]) {
-  const SphereTable *table = &c->table[level];
-  const PetscInt n = table->grid.n, count = c->sphere->count, size = 3 * count;
+/* U[own] += what all other vesicles' grids of degree p do, of viscosity 1; F[vesicles]. */
+static PetscErrorCode CrossAddGrids(CrossLayer c, const PetscReal F[], PetscReal U[]) {
+  const SphereTable *table = &c->sphere->shape;
+  const PetscInt n = table->grid.n, count = c->sphere->count, all = 3 * c->share.vesicles;
   PetscReal *f, *u, *part;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(c->share.vesicles * 3 * n, &f, 3 * n, &u, size, &part));
-  PetscCall(SphereTableValues(table, HARMONIC, count, 3 * c->share.vesicles, F, f));
-  for (PetscInt k = 0; k < c->share.vesicles * 3; k++)
-    for (PetscInt i = 0; i < n; i++) f[k * n + i] *= table->grid.weight[i] / (8 * PETSC_PI * c->nu);
+  PetscCall(PetscMalloc3(all * n, &f, 3 * n, &u, 3 * count, &part));
+  PetscCall(SphereTableValues(table, HARMONIC, count, all, F, f));
+  for (PetscInt k = 0; k < all * n; k++) f[k] *= table->grid.weight[k % n] / (8 * PETSC_PI);
   for (PetscInt v = 0; v < c->share.own; v++) {
-    const PetscReal *X = c->points[level] + (c->share.first + v) * 3 * n;
-    PetscBool any = PETSC_FALSE;
+    const PetscInt self = c->share.first + v;
     PetscCall(PetscArrayzero(u, 3 * n));
-    for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
-      if (pair->own != v || pair->level != level) continue;
-      CrossAddStokeslets(n, X, c->points[level] + pair->other * 3 * n, f + pair->other * 3 * n, u);
-      any = PETSC_TRUE;
-    }
-    if (any) PetscCall(SphereTableProject(table, count, 3, u, part));
-    for (PetscInt k = 0; k < size && any; k++) U[v * size + k] += part[k];
+    for (PetscInt w = 0; w < c->share.vesicles; w++)
+      if (w != self) CrossAddStokeslets(n, c->points + self * 3 * n, c->points + w * 3 * n, f + w * 3 * n, u);
+    PetscCall(SphereTableProject(table, count, 3, u, part));
+    for (PetscInt k = 0; k < 3 * count; k++) U[v * 3 * count + k] += part[k];
   }
   PetscCall(PetscFree3(f, u, part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
+  const VesicleShare *s = &c->share;
   const PetscInt size = 3 * c->sphere->count;
   PetscReal *all;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(c->share.vesicles * size, &all));
-  PetscCall(ShareGather(&c->share, size, F, all));
-  for (PetscInt level = 0; level < CROSS_LEVELS; level++)
-    if (c->points[level]) PetscCall(CrossAddLevel(c, level, all, U));
+  PetscCall(PetscMalloc1(s->vesicles * size, &all));
+  PetscCall(ShareGather(s, size, F, all));
+  for (PetscInt k = 0; k < s->vesicles * size; k++) all[k] /= c->nu;
+  PetscCall(CrossAddGrids(c, all, U));
+  for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
+    const PetscReal *f[2];
+    PetscReal *u[2];
+    for (int side = 0; side < 2; side++) {
+      const PetscInt v = pair->surface[side];
+      f[side] = all + v * size;
+      u[side] = ShareOwns(s, v) ? U + (v - s->first) * size : NULL;
+    }
+    PetscCall(NearPairAdd(pair->near, f, u));
+  }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,14 +1,8 @@
-/* What vesicles do to one another: the single layer between different surfaces, by Stokeslets between points.
-
-   The kernel is smooth there, and a grid on each of two surfaces integrates it; the nearer two surfaces are, the finer
-   the grid. With ds = sqrt(area/points) the mean spacing on the grid of degree p, grids of degree
-
-       2.5 p ds/gap,   p at least,
-
-   leave 1e-4 to 1e-3 of the velocity. Both surfaces of a pair have the same degree, so that the matrix between their
-   coefficients is the transpose of that the other way. Every rank knows all surfaces and sums for its own. */
+/* What vesicles do to one another: the single layer between different surfaces, by Stokeslets between the points of the
+   grids of degree p, and by finer grids where surfaces are near (nearlayer.h). The matrix between the coefficients of
+   two surfaces is the transpose of that the other way. Every rank knows all surfaces and sums for its own. */
 #pragma once
-#include "sphere/spheregrid.h"
+#include "space/nearlayer.h"
 
 /* Which vesicles a rank owns. */
 typedef struct {
@@ -23,12 +17,10 @@ PETSC_EXTERN PetscErrorCode ShareGather(const VesicleShare *share, PetscInt each
 PETSC_EXTERN PetscErrorCode ShareScatter(const VesicleShare *share, PetscInt each, const PetscReal all[],
                                          PetscReal own[]);
 
-#define CROSS_LEVELS 7 /* of grids, of degree p times 1, 1.5, 2, 3, 4, 6, 9 */
-
-/* An own vesicle beside another one. */
 typedef struct {
-  PetscInt own, other; /* own: number among the own vesicles; other: among all */
-  PetscInt level;
+  PetscInt surface[2];
+  PetscReal spacing; /* the larger one of the grids of degree p */
+  NearPair near;     /* NULL: not made */
 } CrossPair;
 
 typedef struct _p_CrossLayer *CrossLayer;
@@ -36,11 +28,11 @@ struct _p_CrossLayer {
   Sphere sphere; /* borrowed */
   VesicleShare share;
   PetscReal nu;
-  SphereTable table[CROSS_LEVELS]; /* part[0] NULL: not made */
-  PetscReal *X;                    /* [vesicles][3 count] of all */
-  PetscReal *points[CROSS_LEVELS]; /* [vesicles][3][n]; NULL: no pair has this level */
+  PetscReal *X;      /* [vesicles][3 count] of all */
+  PetscReal *points; /* [vesicles][3][n] on the grids of degree p */
+  NearTables tables;
   PetscInt pairs;
-  CrossPair *pair; /* [own (vesicles - 1)] */
+  CrossPair *pair; /* [pairs] near ones of which a surface is own */
   PetscReal gap;   /* least of all; negative where surfaces overlap */
   PetscInt nearest[2];
 };
@@ -48,7 +40,9 @@ struct _p_CrossLayer {
 PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, CrossLayer *cross);
 PETSC_EXTERN PetscErrorCode CrossLayerDestroy(CrossLayer *cross);
 
-/* CrossLayerPlace - the own surfaces are at X[own][3 count]: gaps and grids. CrossLayerAdd - U[own][3 count] += the
-   velocities by forces F[own][3 count] on the other vesicles. Collective. */
+/* CrossLayerMeasure - the least gap of the surfaces X[own][3 count]. CrossLayerPlace - the same, and what the surfaces
+   do to one another where none overlap. CrossLayerAdd - U[own][3 count] += the velocities by forces F[own][3 count] on
+   the other vesicles. Collective. */
+PETSC_EXTERN PetscErrorCode CrossLayerMeasure(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerPlace(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerAdd(CrossLayer cross, const PetscReal F[], PetscReal U[]);

@@ -48,7 +48,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   PetscCall(PetscFree2(material, X));
   if (!(*space)->cross) PetscFunctionReturn(PETSC_SUCCESS);
   const CrossLayer cross = (*space)->cross;
-  PetscCall(CrossLayerPlace(cross, (*space)->state.X));
+  PetscCall(CrossLayerMeasure(cross, (*space)->state.X));
   PetvesCheck(cross->gap > 0, s->comm,
               "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
               " overlap by %.3g; allowed: centers farther from one another",

@@ -20,13 +20,13 @@ static void LegendreAt(PetscInt p, PetscReal x, PetscReal s, PetscReal P[]) {
   }
 }
 
-/* The entries of one point for l and m >= 0. at[part]: where Y_(l, 0) of this point is; apart: numbers from one k to
-   the next. A: P_lm and its first and second derivative in theta. */
-static void HarmonicsSet(PetscInt m, PetscReal phi, const PetscReal A[3], PetscInt parts, PetscReal *const at[],
-                         PetscInt apart) {
-  const PetscReal scale = m ? PETSC_SQRT2 : 1, c = scale * PetscCosReal(m * phi), s = scale * PetscSinReal(m * phi);
+/* The entries of one point for l and m >= 0. turn: cos and sin of m phi, times root 2 where m > 0. at[part]: where
+   Y_(l, 0) of this point is; apart: numbers from one k to the next. A: P_lm and its first and second derivative in
+   theta. */
+static void HarmonicsSet(PetscInt m, const PetscReal turn[2], const PetscReal A[3], PetscInt parts,
+                         PetscReal *const at[], PetscInt apart) {
   for (int side = 0; side <= (m > 0); side++) {
-    const PetscReal T = side ? s : c, dT = side ? m * c : -m * s;
+    const PetscReal T = turn[side], dT = side ? m * turn[0] : -m * turn[1];
     const PetscInt k = side ? -m * apart : m * apart;
     const PetscReal entry[] = {A[0] * T, A[1] * T, A[0] * dT, A[2] * T, A[1] * dT, -A[0] * T * m * m};
     for (PetscInt part = 0; part < parts; part++) at[part][k] = entry[part];
@@ -41,9 +41,11 @@ PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], cons
   PetscCall(PetscMalloc1(row * row, &P));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal x = PetscCosReal(theta[i]), s = PetscSinReal(theta[i]);
-    LegendreAt(p, x, s, P);
-    for (PetscInt l = 0; l <= p; l++)
-      for (PetscInt m = 0; m <= l; m++) {
+    if (i == 0 || theta[i] != theta[i - 1]) LegendreAt(p, x, s, P);
+    for (PetscInt m = 0; m <= p; m++) {
+      const PetscReal scale = m ? PETSC_SQRT2 : 1;
+      const PetscReal turn[2] = {scale * PetscCosReal(m * phi[i]), scale * PetscSinReal(m * phi[i])};
+      for (PetscInt l = m; l <= p; l++) {
         PetscReal A[3] = {P[l * row + m], 0, 0}, *at[HARMONIC_PARTS];
         if (parts > 1) {
           const PetscReal lower = l > m ? PetscSqrtReal((2 * l + 1.) * (l * l - m * m) / (2 * l - 1)) *
@@ -53,8 +55,9 @@ PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], cons
           A[2] = -x / s * A[1] + (m * m / (s * s) - l * (l + 1)) * A[0];
         }
         for (PetscInt part = 0; part < parts; part++) at[part] = table + (part * count + l * l + l) * n + i;
-        HarmonicsSet(m, phi[i], A, parts, at, n);
+        HarmonicsSet(m, turn, A, parts, at, n);
       }
+    }
   }
   PetscCall(PetscFree(P));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,0 +1,67 @@
+/* The single layer between two near surfaces, on grids that are fine only where the surfaces face one another.
+
+   Hasimoto's splitting writes the Stokeslet G, of viscosity 1, as a smooth part and a short one of width delta,
+
+       8 pi L(delta) = (erfc(r/delta)/r) (I + d d/r^2) - (2/(delta root pi)) exp(-(r/delta)^2) (I - d d/r^2),
+
+   so that, with widths delta_k = delta_0/2^k and L(delta_n) nothing over the gap of the surfaces,
+
+       G = [G - L(delta_0)] + SUM_(k = 1..n) [L(delta_(k-1)) - L(delta_k)].
+
+   A term in brackets is as smooth as its smallest width, and all but G itself are short. The first one is summed on the
+   grids of degree p, G by CrossLayerAdd and -L(delta_0) here; the k-th on grids 2^k times as fine, whose points are
+   made only where the other surface is in reach. A grid of degree q has q + 1 = 2^k (p + 1) latitudes, so that each of
+   its points lies in a cell of the grid before, and near the poles it has fewer longitudes. */
+#pragma once
+#include "sphere/spheregrid.h"
+
+#define NEAR_LEVELS 9
+
+/* Some points of a grid on a surface. */
+typedef struct {
+  PetscInt n, *point;        /* [n] their numbers in the grid */
+  PetscReal *Y, *X;          /* [count][n] harmonics, [3][n] */
+  PetscReal *weight, *theta; /* [n] */
+  PetscReal *distance;       /* [n] to the other patch */
+} NearPatch;
+
+/* A pair of points, i of the first surface and j of the second, whose kernel is a I + b d d. */
+typedef struct {
+  PetscInt i, j;
+  PetscReal a, b;
+} NearEntry;
+
+typedef struct {
+  NearPatch patch[2];
+  PetscInt entries;
+  NearEntry *entry;
+} NearLevel;
+
+typedef struct _p_NearPair *NearPair;
+struct _p_NearPair {
+  Sphere sphere; /* borrowed */
+  PetscInt levels;
+  NearLevel level[NEAR_LEVELS];
+};
+
+/* What all near pairs of a degree share. */
+typedef struct {
+  SphereGrid grid[NEAR_LEVELS]; /* n 0: not made */
+  PetscReal *isotropic, *along; /* 8 pi r L(1) = isotropic I + along d d/r^2, at equal distances r; NULL: not made */
+} NearTables;
+
+/* NearTablesCreate - of a degree; grids are made where they are first needed. Not collective. */
+PETSC_EXTERN PetscErrorCode NearTablesCreate(NearTables *tables);
+PETSC_EXTERN PetscErrorCode NearTablesDestroy(NearTables *tables);
+
+/* NearReach - surfaces farther apart than this have nothing short between them; spacing: the largest distance of
+   neighbouring points of the grids of degree p. Not collective. */
+PETSC_EXTERN PetscReal NearReach(PetscReal spacing);
+
+/* NearPairCreate - of the surfaces c1[3][count] and c2[3][count].
+   NearPairAdd - U[side][3][count] += the velocities by the forces F[side][3][count] on the other surface, of viscosity
+   1; U[side] NULL: not wanted. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode NearPairCreate(Sphere sphere, NearTables *tables, PetscReal spacing, const PetscReal c1[],
+                                           const PetscReal c2[], NearPair *pair);
+PETSC_EXTERN PetscErrorCode NearPairDestroy(NearPair *pair);
+PETSC_EXTERN PetscErrorCode NearPairAdd(NearPair pair, const PetscReal *const F[2], PetscReal *const U[2]);
