@@ -80,6 +80,9 @@ PetscErrorCode SceneResolveSpace(Draft s) {
        "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both "
        "descriptions"},
       {s->gravity.g.n != 3, "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
+      {s->time.adapt == ADAPT_ERROR && s->scheme.order < 2,
+       "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with "
+       "-scheme_order 2 or 3"},
       {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number from 4 to 32"},
       {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
                            "-dim 3: 1, or one vesicle"},

@@ -31,7 +31,10 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                 .rtol = 1e-8,
                                 .flow = SceneFlow3,
                                 .context = &s->flow,
-                                .policy = {.base = s->time.dt}};
+                                .policy = {.adaptive = (PetscBool)(s->time.adapt == ADAPT_ERROR),
+                                           .base = s->time.dt,
+                                           .tolerance = s->time.adapt_tol,
+                                           .max_step = s->time.adapt_max_step}};
   Vesicle3Setting *material;
   PetscReal *X;
   PetscFunctionBeginUser;

@@ -45,6 +45,7 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
                          &s->work.V));
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
   s->order = PetscMin(setting->order, 2);
+  s->plan.level = StepFirstLevel();
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, &s->cross));
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -265,12 +266,14 @@ static PetscErrorCode SpaceStateCopy(Space s, const SpaceState *from, SpaceState
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step in its parts. */
-static PetscErrorCode SpaceStepInParts(Space s, PetscReal dt, PetscReal end) {
+/* A fixed step, in parts where it is the first. */
+static PetscErrorCode SpaceStepInParts(Space s, PetscReal until) {
   const PetscInt parts = s->state.step ? 1 : PARTS;
-  const PetscReal t = s->state.t;
+  const PetscReal t = s->state.t, dt = StepFixed(&s->setting.policy, t, until),
+                  end = StepTime(&s->setting.policy, t, dt, until);
   PetscReal done = 0;
   PetscFunctionBeginUser;
+  s->report.dt = dt;
   if (parts > 1) PetscCall(SpaceStateCopy(s, &s->state, &s->start));
   for (PetscInt part = 0; part < parts; part++) {
     const PetscReal share = parts == 1 ? dt : dt / (PetscReal)(1 << (part ? parts - part : parts - 1));
@@ -287,20 +290,53 @@ static PetscErrorCode SpaceStepInParts(Space s, PetscReal dt, PetscReal end) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Attempts of smaller and smaller steps, until one is accepted or none is left. */
+static PetscErrorCode SpaceStepJudged(Space s, PetscReal until) {
+  const StepPolicy *policy = &s->setting.policy;
+  const PetscReal t = s->state.t;
+  const PetscInt order = PetscMin(s->order, s->past + 1);
+  StepVerdict verdict = STEP_REPEAT;
+  PetscFunctionBeginUser;
+  s->plan.before = PETSC_MAX_REAL;
+  while (verdict == STEP_REPEAT) {
+    const PetscReal dt = StepSize(policy, &s->plan, s->state.dt_last, PETSC_MAX_REAL, until - t);
+    s->report.dt = dt;
+    *s->report.failure = 0;
+    PetscCall(SpaceAttempt(s, dt));
+    const StepTrial trial = {.solved = (PetscBool) !*s->report.failure,
+                             .first = (PetscBool)!s->past,
+                             .order = order,
+                             .dt = dt,
+                             .error = s->report.estimate,
+                             .ratio = 1};
+    verdict = StepJudge(policy, &trial, &s->plan);
+    if (verdict != STEP_ACCEPT) continue;
+    PetscCall(SpaceAccept(s, dt, StepTime(policy, t, dt, until)));
+    s->state.step++;
+  }
+  if (verdict == STEP_GIVE_UP && !*s->report.failure)
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE, "the error estimate stays at %g",
+                            (double)s->report.estimate));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SpaceStep(Space s, PetscReal until) {
-  const PetscReal t = s->state.t, dt = StepFixed(&s->setting.policy, t, until);
+  const PetscReal t = s->state.t;
   PetscLogDouble start, end;
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
   PetscCall(PhaseBegin(PHASE_STEP));
   PetscCall(PetscMemzero(&s->report, sizeof(s->report)));
-  s->report.dt = dt;
-  PetscCall(SpaceStepInParts(s, dt, StepTime(&s->setting.policy, t, dt, until)));
+  if (s->setting.policy.adaptive)
+    PetscCall(SpaceStepJudged(s, until));
+  else
+    PetscCall(SpaceStepInParts(s, until));
   if (*s->report.failure) {
     const size_t used = strlen(s->report.failure);
     PetscCall(PetscSNPrintf(s->report.failure + used, PETVES_MAX_MESSAGE - used,
-                            " in step %" PetscInt_FMT " at time %g; try a smaller -time_step or -bending_newton 2",
-                            s->state.step + 1, (double)t));
+                            " in step %" PetscInt_FMT " at time %g; try %s-bending_newton 2", s->state.step + 1,
+                            (double)t,
+                            s->setting.policy.adaptive ? "" : "a smaller -time_step, -time_adapt error or "));
   }
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
@@ -313,6 +349,7 @@ SpaceNumbers SpaceGetNumbers(Space s) {
                     .past = s->past,
                     .order = s->order,
                     .solved = s->state.solved,
+                    .level = s->plan.level,
                     .t = s->state.t,
                     .made = s->made.a0};
   n.dt_last[0] = s->state.dt_last;
@@ -328,6 +365,7 @@ void SpaceSetNumbers(Space s, const SpaceNumbers *n) {
   s->state.dt_last = n->dt_last[0];
   s->past = n->past;
   s->order = n->order;
+  s->plan.level = n->level;
   for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = n->dt_last[j];
   s->made.a0 = n->made;
   s->age = AgeSetMemory(n->age);

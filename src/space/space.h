@@ -65,6 +65,7 @@ struct _p_Space {
   SpaceState start; /* the first state, which a failed first step goes back to */
   PetscInt past;    /* states before the present one that are known */
   PetscInt order;   /* of the next step, where enough states are known */
+  StepPlan plan;    /* of adaptive steps */
   SpaceReport report;
   SpaceWork work;
   Mat A;
@@ -86,13 +87,14 @@ PETSC_EXTERN PetscErrorCode SpaceDestroy(Space *space);
    where the solve fails, as the first step will say why. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceStart(Space space);
 
-/* SpaceStep - one time step, to the time `until` at most; the first one in parts that grow from 1/64 of it. When
-   report.failure is not empty the step was not taken, and the state is the one before. Collective. */
+/* SpaceStep - one time step, to the time `until` at most. The first one of a fixed policy is taken in parts that grow
+   from 1/64 of it. When report.failure is not empty the step was not taken, and the state is the one before.
+   Collective. */
 PETSC_EXTERN PetscErrorCode SpaceStep(Space space, PetscReal until);
 
 /* What a checkpoint has of a space: its numbers, and arrays of the own vesicles, `each` numbers a vesicle. */
 typedef struct {
-  PetscInt step, past, order, solved;
+  PetscInt step, past, order, solved, level;
   PetscReal t, dt_last[BDF_MOST]; /* of the present state and those before it */
   PetscReal made;                 /* a0 of the factors */
   PetscReal age[AGE_MEMORY];

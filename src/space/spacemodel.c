@@ -123,21 +123,26 @@ static const char *SpaceWarning(const void *model, PetscInt i) {
 /* Write or read whole numbers and times; a run has had those that are read. */
 static PetscErrorCode SpaceMoveNumbers(SpaceModel m, H5File *file, PetscBool write, PetscInt *frames) {
   SpaceNumbers n = SpaceGetNumbers(m->space);
-  PetscInt whole[] = {n.step, n.past, n.order, n.solved, *frames, m->its};
+  PetscInt whole[] = {n.step, n.past, n.order, n.solved, *frames, m->its, n.level};
   PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
   const PetscInt reals = 2 + BDF_MOST + AGE_MEMORY;
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(real + 2, n.dt_last, BDF_MOST));
   PetscCall(PetscArraycpy(real + 2 + BDF_MOST, n.age, AGE_MEMORY));
-  const CheckpointNumber all[] = {{"numbers", 0, 0, whole, NULL, 6}, {"times", 0, 0, NULL, real, reals}};
+  const CheckpointNumber all[] = {{"numbers", 0, 0, whole, NULL, 7}, {"times", 0, 0, NULL, real, reals}};
   PetscCall(CheckpointMoveNumbers(file, write, 2, all));
   if (write) PetscFunctionReturn(PETSC_SUCCESS);
   if (whole[0] < 0 || whole[1] < 0 || whole[1] >= BDF_MOST || whole[2] < 1 || whole[2] > BDF_MOST || whole[4] < 0)
     real[0] = NAN;
   CheckpointFinite(file, reals, real);
   PetscCall(RestartEntries(m->scene, file));
-  n = (SpaceNumbers){
-      .step = whole[0], .past = whole[1], .order = whole[2], .solved = whole[3], .t = real[0], .made = real[1]};
+  n = (SpaceNumbers){.step = whole[0],
+                     .past = whole[1],
+                     .order = whole[2],
+                     .solved = whole[3],
+                     .level = whole[6],
+                     .t = real[0],
+                     .made = real[1]};
   PetscCall(PetscArraycpy(n.dt_last, real + 2, BDF_MOST));
   PetscCall(PetscArraycpy(n.age, real + 2 + BDF_MOST, AGE_MEMORY));
   SpaceSetNumbers(m->space, &n);

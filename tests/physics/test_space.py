@@ -78,6 +78,21 @@ def test_orders_in_time(tmp_path):
         assert np.log2(abs((found[0] - found[1]) / (found[1] - found[2]))) > least
 
 
+def test_steps_by_error(tmp_path):
+    """The angle at t = 2 follows the tolerance: fixed steps of 0.01 are the reference. Steps grow with the motion's end."""
+
+    def last(name, steps):
+        return run_petves(tmp_path / name, f"{SHEAR} -vesicle_reduced_volume 0.9 -time_end 2 {steps}").series
+
+    fine = last("fine", "-time_step 0.01")["inclination"][-1]
+    wrong = []
+    for tolerance in (1e-3, 1e-4):
+        run = last(str(tolerance), f"-time_step 0.2 -time_adapt error -time_adapt_tol {tolerance}")
+        wrong.append(abs(run["inclination"][-1] - fine))
+        assert run["dt"][1] == 0.2 / 32 and run["dt"].max() > 8 * run["dt"][1] and len(run["dt"]) < 50
+    assert wrong[1] < 1e-4 and wrong[1] < wrong[0] < 1e-3
+
+
 def test_turned_in_space(tmp_path):
     """Space has no direction of its own: a vesicle at rest that is turned, poles included, relaxes alike."""
     rows = []
@@ -87,9 +102,10 @@ def test_turned_in_space(tmp_path):
     assert np.allclose(rows, rows[0], rtol=1e-7)
 
 
-def test_one_rank_or_three(tmp_path):
+@pytest.mark.parametrize("steps", ["-time_step 0.2", "-time_step 1 -time_adapt error -time_adapt_tol 1e-3"])
+def test_one_rank_or_three(steps, tmp_path):
     """Two vesicles that pass one another, also from a checkpoint on, which gives the same bits."""
-    pair = f"{SHEAR} -vesicle_count 2 -vesicle_center -1.6,0.3,0,1.6,-0.3,0 -time_step 0.2 -coupled_ksp_rtol 1e-12"
+    pair = f"{SHEAR} -vesicle_count 2 -vesicle_center -1.6,0.3,0,1.6,-0.3,0 {steps} -output_every 1 -coupled_ksp_rtol 1e-12"
     one, three = (run_petves(tmp_path / str(n), f"{pair} -time_end 2", n).series for n in (1, 3))
     for name in ("inclination_1", "center_x_2", "tension_max", "energy_bending"):
         assert np.allclose(one[name], three[name], rtol=1e-9)
