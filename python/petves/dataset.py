@@ -74,17 +74,16 @@ def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Da
     """
     if kind not in ("auto", "xarray", "numpy"):
         raise RunError(f"kind {kind}: unknown; allowed: auto, xarray, numpy")
+    run = (SurfaceRun if is_space(folder) else Run).read(folder)
+    if kind == "numpy":
+        return run
     try:
         import xarray
     except ImportError:
-        if kind == "xarray":
-            raise RunError("xarray is not installed; install python3-xarray, or use kind='numpy'") from None
-        kind = "numpy"
-    if is_space(folder):
-        surfaces = SurfaceRun.read(folder)
-        return surfaces if kind == "numpy" else surfaces.dataset()
-    run = Run.read(folder)
-    return run if kind == "numpy" else _dataset(run, xarray)
+        if kind == "auto":
+            return run
+        raise RunError("xarray is not installed; install python3-xarray, or use kind='numpy'") from None
+    return run.dataset() if isinstance(run, SurfaceRun) else _dataset(run, xarray)
 
 
 def _dataset(run: Run, xarray: Any) -> xarray.Dataset:

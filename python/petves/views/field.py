@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable, Sequence
+from typing import Callable, Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.image import AxesImage
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Outline
 
 from petves.run import Run
 from petves.views.figures import MANY, PLAIN, Look, Sheet, add_bar, new_sheet, save_figure
 from petves.views.window import Window
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.image import AxesImage
 
 STREAMS = 1.1  # density of streamlines
 OVER_FIELD, OVER_STREAMS = 1.2, 1.5  # matplotlib's order: streamlines, solids; membranes at its 2
@@ -80,8 +81,6 @@ def draw_membranes(
     Obstacles are areas in grey, tracers dots. Images across a periodic seam are there too. Returns what was drawn; with vesicles the last one
     is what a colour bar of the tension needs.
     """
-    from matplotlib.collections import LineCollection
-
     window, first = Window(run, frame, follow), Window(run, 0, follow)
     drawn: list[Artist] = draw_solids(axes, window)
     if run.tracers.size:
@@ -112,9 +111,6 @@ def draw_membranes(
 
 def draw_solids(axes: Axes, window: Window) -> list[Artist]:
     """Draw the obstacles as grey areas over field and streamlines, below the membranes; return what was drawn."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Outline
-
     curves = window.solids()
     if not curves:
         return []
@@ -140,8 +136,6 @@ def kinds_of(run: Run) -> tuple[np.ndarray, list[str]]:
 
 def draw_members(axes: Axes, run: Run, frame: int, follow: int | None = None) -> Artist:
     """Draw many vesicles as areas in the colours of their kinds, images across a periodic seam included."""
-    from matplotlib.collections import PolyCollection
-
     window, (members, _) = Window(run, frame, follow), kinds_of(run)
     outlines = [(v, points) for v in range(run.vesicles) for points in window.images(v, curve=run.vesicles < CROWD)]
     colors = [f"C{members[v]}" for v, _ in outlines]

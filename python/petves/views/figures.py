@@ -5,17 +5,18 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from petves.errors import RunError
 from petves.files import writing
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure
 
 FORMATS = ("png", "pdf", "svg")
 MANY = 8  # vesicles above which none has a name
@@ -50,8 +51,6 @@ class Look:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be drawn."""
-        import matplotlib
-
         if self.format not in FORMATS:
             raise RunError(f"format {self.format}: unknown; allowed: {', '.join(FORMATS)}")
         if not 10 <= self.dpi <= 2400:
@@ -65,6 +64,11 @@ class Look:
 PLAIN = Look()
 
 
+def blank_figure(width: float, height: float, layout: str | None = None) -> Figure:
+    """Return an empty figure that needs no display; its sides are in inches."""
+    return FigureCanvasAgg(Figure(figsize=(width, height), layout=layout)).figure
+
+
 def new_figure(
     width: float, height: float, columns: int = 1, rows: int = 1, equal: bool = False, look: Look = PLAIN
 ) -> tuple[Figure, np.ndarray]:
@@ -72,13 +76,9 @@ def new_figure(
 
     A look's width stands in place of `width`; the height goes with it as far as letters have room.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     if look.width is not None:
         width, height = look.width, max(height * look.width / width, 1.0 + 1.7 * rows)
-    figure = Figure(figsize=(width, height), layout="compressed" if equal else "constrained")
-    FigureCanvasAgg(figure)
+    figure = blank_figure(width, height, "compressed" if equal else "constrained")
     return figure, figure.subplots(rows, columns, squeeze=False).ravel()
 
 
@@ -107,9 +107,6 @@ def new_sheet(
 
     Panels stand side by side, or one above the other where the box is wide.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     around = LEFT + RIGHT
     flat = wide > WIDE * high or (look.width is not None and look.width / panels - around < LEAST)
     rows = panels if flat else 1
@@ -120,8 +117,7 @@ def new_sheet(
     across = tall * wide / high
     row = ABOVE + tall + BELOW + bars * (BAR + UNDER_BAR)
     width, height = columns * (LEFT + each + RIGHT), rows * row + last * (BAR + UNDER_BAR)
-    figure = Figure(figsize=(width, height))
-    FigureCanvasAgg(figure)
+    figure = blank_figure(width, height)
 
     def place(left: float, bottom: float, w: float, h: float) -> Axes:
         return figure.add_axes((left / width, bottom / height, w / width, h / height))
@@ -138,8 +134,6 @@ def new_sheet(
 
 def add_bar(place: Axes, mappable: ScalarMappable, label: str) -> None:
     """Draw a colour bar with as many numbers as its width takes."""
-    from matplotlib.ticker import MaxNLocator
-
     inches = place.get_window_extent().width / place.figure.dpi
     ticks = MaxNLocator(max(2, int(inches / TICK)), steps=[1, 2, 2.5, 5, 10], min_n_ticks=2)
     place.figure.colorbar(mappable, cax=place, label=label, ticks=ticks, orientation="horizontal")
@@ -153,8 +147,6 @@ def filled(name: str, parts: dict[str, str]) -> str:
 
 def save_figure(figure: Figure, path: Path, look: Look = PLAIN) -> Path:
     """Write a picture in the look's format; return its path."""
-    import matplotlib
-
     path = path.with_suffix(f".{look.format}")
     dates = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}  # the same run, the same file
     with writing(path) as fresh, matplotlib.rc_context(FONTS):

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.figure import Figure
 
+from petves.dataset import load
 from petves.files import writing
 from petves.progress import progress_bar
 from petves.run import Run, RunError
-from petves.surfaces import SurfaceRun, is_space
+from petves.surfaces import SurfaceRun
 from petves.views.field import FIELDS, TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines, reach
 from petves.views.figures import PLAIN, Look, add_bar
-from petves.views.surfaces import film_surfaces
+from petves.views.surfaces import draw_surfaces, surface_figure, tension_limits
 from petves.views.window import Window
 
 DOTS = 150  # an inch
@@ -60,7 +64,7 @@ def movie(
     RunError
         When the run cannot be read, or the file not be written this way.
     """
-    run = SurfaceRun.read(folder) if is_space(folder) else Run.read(folder)
+    run = load(folder, "numpy")
     ffmpeg = shutil.which("ffmpeg") is not None
     path = Path(output) if output else run.folder / ("movie.mp4" if ffmpeg else "movie.gif")
     if path.suffix not in (".mp4", ".gif"):
@@ -69,10 +73,24 @@ def movie(
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
     if field not in FIELDS:
         raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
+    frames, look = chosen_frames(run, every, begin, end), replace(look, width=width / DOTS)
     if isinstance(run, SurfaceRun):
-        return film_surfaces(run, path, chosen_frames(run, every, begin, end), rate, width, look)
-    with writing(path) as fresh:
-        _film(run, chosen_frames(run, every, begin, end), fresh, field, rate, width, streamlines, look)
+        figure, limits = surface_figure(look), tension_limits(run, frames)
+        draw = lambda frame: draw_surfaces(figure, run, frame, limits, look)
+    else:
+        figure, draw = _plane(run, frames, field, streamlines, look)
+    # films have even numbers of pixels
+    figure.set_size_inches(2 * np.round(figure.get_size_inches() * DOTS / 2) / DOTS)
+    if path.suffix == ".mp4":
+        writer = FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
+    else:
+        writer = PillowWriter(fps=rate)
+    with writing(path) as fresh, writer.saving(figure, str(fresh), DOTS):
+        with progress_bar(len(frames), unit="frames") as bar:
+            for done, frame in enumerate(frames, 1):
+                draw(frame)
+                writer.grab_frame()
+                bar(done)
     return path
 
 
@@ -90,35 +108,28 @@ def chosen_frames(run: Run | SurfaceRun, every: int, begin: float | None, end: f
     return frames
 
 
-def _film(
-    run: Run, frames: np.ndarray, path: Path, field: str, rate: float, width: int, streamlines: bool, look: Look
-) -> None:
-    from matplotlib.animation import FFMpegWriter, PillowWriter
-
+def _plane(
+    run: Run, frames: np.ndarray, field: str, streamlines: bool, look: Look
+) -> tuple[Figure, Callable[[int], None]]:
+    """Return a figure, and what draws the membranes over a field at a saved time on it; colours are those of all frames."""
     kind = FIELDS[field]
-    windows = [Window(run, frame, look.follow) for frame in frames]
-    ends = [(reach(values), np.max(np.abs(values))) for values in map(kind.values, windows)]
+    windows = {frame: Window(run, frame, look.follow) for frame in frames}
+    ends = [(reach(values), np.max(np.abs(values))) for values in map(kind.values, windows.values())]
     highest, most = np.max(ends, axis=0)
     limits = (run.tension[frames].min(), run.tension[frames].max()) if run.vesicles else (0.0, 1.0)
-    sheet = box_sheet(windows[0], replace(look, width=width / DOTS), panels=1, last=run.vesicles > 0)
-    (panel,), figure = sheet.panels, sheet.figure
-    # films have even numbers of pixels
-    figure.set_size_inches(2 * np.round(figure.get_size_inches() * DOTS / 2) / DOTS)
-    if path.suffix == ".mp4":
-        writer = FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
-    else:
-        writer = PillowWriter(fps=rate)
-    with writer.saving(figure, str(path), DOTS), progress_bar(len(frames), unit="frames") as bar:
-        for done, window in enumerate(windows):
-            panel.clear()
-            image = draw_field(panel, kind, window, look, highest, most)
-            drawn = draw_membranes(panel, run, window.frame, limits, kind.line, look.follow)
-            if streamlines:
-                draw_streamlines(panel, window)
-            if not done:
-                add_bar(sheet.bars[0], image, kind.label)
-                if sheet.last is not None:
-                    add_bar(sheet.last, drawn[-1], TENSION)
-            panel.set_title(f"$t$ = {run.time[window.frame]:.4g}", fontsize=10)
-            writer.grab_frame()
-            bar(done + 1)
+    sheet = box_sheet(windows[frames[0]], look, panels=1, last=run.vesicles > 0)
+    (panel,) = sheet.panels
+
+    def draw(frame: int) -> None:
+        panel.clear()
+        image = draw_field(panel, kind, windows[frame], look, highest, most)
+        drawn = draw_membranes(panel, run, frame, limits, kind.line, look.follow)
+        if streamlines:
+            draw_streamlines(panel, windows[frame])
+        if frame == frames[0]:
+            add_bar(sheet.bars[0], image, kind.label)
+            if sheet.last is not None:
+                add_bar(sheet.last, drawn[-1], TENSION)
+        panel.set_title(f"$t$ = {run.time[frame]:.4g}", fontsize=10)
+
+    return sheet.figure, draw

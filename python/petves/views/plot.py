@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Sequence
+from typing import Sequence
 
+import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from petves.measures import ENERGIES
 from petves.run import Run, RunError
@@ -16,10 +20,6 @@ from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look
 from petves.views.figures import dress, legend_above, new_figure, new_sheet, save_figure
 from petves.views.surfaces import plot_surfaces
 from petves.views.window import Window
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 OUTLINES = 7  # outlines in the picture of shapes
 LEAST_SPAN = 0.02  # of an axis of angles over pi
@@ -243,10 +243,6 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
 
     With obstacles, which are grey where they are last, or where a vesicle has left a periodic box, the whole box is drawn, outlines cut at the seam.
     """
-    import matplotlib
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import BoundaryNorm
-
     if run.vesicles > MANY:
         return _plot_first_and_last(run, look)
     low, high = run.markers.min(axis=(0, 1)), run.markers.max(axis=(0, 1))
@@ -267,9 +263,7 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
         draw_solids(sheet.panels[0], Window(run, -1))
     dress(sheet.panels[0], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)")
     sheet.panels[0].set(xlim=limits[:2], ylim=limits[2:])
-    scale = ScalarMappable(
-        BoundaryNorm(np.arange(len(frames) + 1), len(frames)), matplotlib.colors.ListedColormap(colors)
-    )
+    scale = ScalarMappable(BoundaryNorm(np.arange(len(frames) + 1), len(frames)), ListedColormap(colors))
     each = -(-len(frames) // max(1, int(sheet.bars[0].get_window_extent().width / sheet.figure.dpi / TICK)))
     ticks = np.arange(len(frames))[::-each][::-1] + 0.5
     bar = sheet.figure.colorbar(scale, cax=sheet.bars[0], label="time $t$", ticks=ticks, orientation="horizontal")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 
 from petves.files import read_file, shown, writing
 from petves.run import Run
@@ -88,8 +89,6 @@ def _plots(run: Run) -> str:
 
 def _data(run: Run) -> dict[str, Any]:
     """Return what the page draws: outlines, tension and fields of at most FRAMES saved times."""
-    from matplotlib import colormaps
-
     frames = np.unique(np.linspace(0, len(run.time) - 1, min(FRAMES, len(run.time))).round().astype(int))
     digits = 5 - int(np.floor(np.log10(run.box[1] - run.box[0])))
     raw = [Window(run, frame).fields() for frame in frames]

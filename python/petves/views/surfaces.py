@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
+import matplotlib
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from petves.files import writing
-from petves.progress import progress_bar
 from petves.surfaces import SurfaceRun
 from petves.views.curves import draw_curves
-from petves.views.figures import PLAIN, Look, save_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from petves.views.field import TENSION
+from petves.views.figures import PLAIN, Look, blank_figure, save_figure
 
 #: Views: what is on the two axes of the picture, and from where one looks (elevation, azimuth in degrees).
 SIDES = {"$x, y$": (90, -90), "$x, z$": (0, -90), "$y, z$": (0, 0)}
@@ -25,56 +26,29 @@ SHADE = 0.55  # of a surface that looks away from the light
 def plot_surfaces(run: SurfaceRun, look: Look = PLAIN, time: float | None = None) -> list[Path]:
     """Draw the surfaces at a saved time, the last one if none is given, and the course of the run; return the files."""
     frame = -1 if time is None else run.frame_at(time)
-    figure = _figure(look.width or 7)
-    _draw(figure, run, frame, _limits(run, [frame]), look)
+    figure = surface_figure(look)
+    draw_surfaces(figure, run, frame, tension_limits(run, [frame]), look)
     drawn = [save_figure(figure, run.folder / ("surfaces.png" if time is None else f"surfaces_t{time:g}.png"), look)]
     if time is None:
         drawn.append(_plot_course(run, look))
     return drawn
 
 
-def film_surfaces(run: SurfaceRun, path: Path, frames: np.ndarray, rate: float, width: int, look: Look = PLAIN) -> Path:
-    """Film the surfaces at these saved times; return the file."""
-    from matplotlib.animation import FFMpegWriter, PillowWriter
-
-    dots = 150
-    figure = _figure(2 * round(width / 2) / dots)
-    figure.set_size_inches(2 * np.round(figure.get_size_inches() * dots / 2) / dots)
-    limits = _limits(run, frames)
-    options = dict(codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-loglevel", "error"])
-    writer = FFMpegWriter(fps=rate, **options) if path.suffix == ".mp4" else PillowWriter(fps=rate)
-    with writing(path) as fresh, writer.saving(figure, str(fresh), dots), progress_bar(
-        len(frames), unit="frames"
-    ) as bar:
-        for done, frame in enumerate(frames):
-            figure.clear()
-            _draw(figure, run, frame, limits, look)
-            writer.grab_frame()
-            bar(done + 1)
-    return path
+def surface_figure(look: Look) -> Figure:
+    """Return a figure with the proportions of the four views and their colour bar."""
+    width = look.width or 7
+    return blank_figure(width, width * 0.86)
 
 
-def _figure(width: float) -> Figure:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, width * 0.86))
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def _limits(run: SurfaceRun, frames: Any) -> tuple[float, float]:
+def tension_limits(run: SurfaceRun, frames: Sequence[int] | np.ndarray) -> tuple[float, float]:
+    """Return the least and the largest tension at some saved times, which differ."""
     chosen = run.tension[frames]
     return float(chosen.min()), float(max(chosen.max(), chosen.min() + 1e-12))
 
 
-def _draw(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[float, float], look: Look) -> None:
-    """Draw one view from the side and three along the axes, coloured by tension."""
-    import matplotlib
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
+def draw_surfaces(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[float, float], look: Look) -> None:
+    """Draw one view from the side and three along the axes, coloured by tension, in place of what the figure has."""
+    figure.clear()
     colours = ScalarMappable(Normalize(*limits), matplotlib.colormaps[look.cmap or "viridis"])
     corners = run.points[frame][:, run.triangles]  # vesicle, triangle, corner, xyz
     faces = corners.reshape(-1, 3, 3)
@@ -95,7 +69,7 @@ def _draw(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[float, floa
         axes.set_axis_off()
         axes.set_title(name or f"$t$ = {run.time[frame]:.4g}", fontsize=9, y=0.96)
     bar = figure.add_axes((0.25, 0.085, 0.5, 0.02))
-    figure.colorbar(colours, cax=bar, orientation="horizontal", label=r"tension $\sigma$ (length$^3$/time$^2$)")
+    figure.colorbar(colours, cax=bar, orientation="horizontal", label=TENSION)
 
 
 def _plot_course(run: SurfaceRun, look: Look) -> Path:
