@@ -83,53 +83,65 @@ def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Da
         if kind == "auto":
             return run
         raise RunError("xarray is not installed; install python3-xarray, or use kind='numpy'") from None
-    return run.dataset() if isinstance(run, SurfaceRun) else _dataset(run, xarray)
+    values, coordinates, attributes = _plane(run) if isinstance(run, Run) else _space(run)
+    columns = {name: ("step", column) for name, column in run.series.items() if name not in ("step", "time")}
+    coordinates["step"], coordinates["step_time"] = run.series["step"].astype(int), ("step", run.series["time"])
+    attributes |= {"folder": str(run.folder), "nu": run.nu, "reason": run.summary.get("reason", "")}
+    data = xarray.Dataset(columns | values, coordinates | {"time": run.time}, attributes)
+    for name, variable in data.variables.items():
+        is_energy = isinstance(run, SurfaceRun) and name.startswith("energy_")
+        variable.attrs["units"] = "length^5/time^2" if is_energy else unit(name)
+    return data
 
 
-def _dataset(run: Run, xarray: Any) -> xarray.Dataset:
+Parts = tuple[dict[str, Any], dict[str, Any], dict[str, Any]]
+"""Variables, coordinates and attributes of a dataset."""
+
+
+def _plane(run: Run) -> Parts:
+    """Return what the dataset of a run in the plane has besides its series."""
     from petves.lazy import lazy_array
 
-    x, y = run.cell_centers()
-    frames, steps = len(run.time), len(run.series["step"])
-    vesicle = np.repeat(np.arange(1, run.vesicles + 1), np.diff(run.start))
-    variables: dict[str, tuple[Any, Any]] = {
-        name: ("step", values) for name, values in run.series.items() if name not in ("step", "time")
+    frames, steps, member = len(run.time), len(run.series["step"]), np.arange(1, run.vesicles + 1)
+    at_marker, at_obstacle = ("time", "marker"), ("time", "obstacle_marker", "xy")
+    values: dict[str, Any] = {
+        "pressure_gradient": ("time", run.pressure_gradient),
+        "markers": ((*at_marker, "xy"), run.markers),
+        "velocity": ((*at_marker, "xy"), run.velocity),
+        "tension": (at_marker, run.tension),
+        "stretch": (at_marker, run.stretch),
     }
     for name in "uvp":
-        variables[name] = ("time", "y", "x"), lazy_array(run.folder / "run.h5", f"fluid/{name}", frames)
+        values[name] = ("time", "y", "x"), lazy_array(run.folder / "run.h5", f"fluid/{name}", frames)
+    x, y = run.cell_centers()
+    coordinates = {"x": x, "y": y, "xy": ["x", "y"], "vesicle": ("marker", np.repeat(member, np.diff(run.start)))}
     for name in run.columns_of_each():
-        variables[f"each_{name}"] = ("step", "member"), lazy_array(run.folder / "vesicles.h5", name, steps)
-    variables |= {
-        "pressure_gradient": ("time", run.pressure_gradient),
-        "markers": (("time", "marker", "xy"), run.markers),
-        "velocity": (("time", "marker", "xy"), run.velocity),
-        "tension": (("time", "marker"), run.tension),
-        "stretch": (("time", "marker"), run.stretch),
-    }
-    coordinates = {
-        "step": run.series["step"].astype(int),
-        "step_time": ("step", run.series["time"]),
-        "time": run.time,
-        "x": x,
-        "y": y,
-        "xy": ["x", "y"],
-        "vesicle": ("marker", vesicle),
-    }
-    if run.columns_of_each():
-        coordinates["member"] = np.arange(1, run.vesicles + 1)
-    attributes = {"h": run.h, "nu": run.nu, "c_b": run.c_b, "box": run.box, "folder": str(run.folder)}
-    attributes["periodic"] = "".join(name for name, period in zip("xy", run.periods) if period)
-    attributes |= {"walls": run.walls, "reason": run.summary.get("reason", "")}
+        values[f"each_{name}"] = ("step", "member"), lazy_array(run.folder / "vesicles.h5", name, steps)
+        coordinates["member"] = member
     if run.tracers.size:
-        variables["tracers"] = ("time", "tracer", "xy"), run.tracers
+        values["tracers"] = ("time", "tracer", "xy"), run.tracers
     if run.obstacles:
         moving = len(run.obstacle_markers) > 0
         places = run.obstacle_markers if moving else np.concatenate(run.obstacles)
-        variables["obstacles"] = (("time", "obstacle_marker", "xy")[not moving :], places)
-        variables["obstacle_force"] = (("time", "obstacle_marker", "xy"), run.obstacle_force)
+        values |= {
+            "obstacles": (at_obstacle[not moving :], places),
+            "obstacle_force": (at_obstacle, run.obstacle_force),
+        }
         sizes = [len(points) for points in run.obstacles]
         coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(1, len(sizes) + 1), sizes))
-    data = xarray.Dataset(variables, coordinates, attributes)
-    for name, variable in data.variables.items():
-        variable.attrs["units"] = unit(name)
-    return data
+    periodic = "".join(name for name, period in zip("xy", run.periods) if period)
+    attributes = {"h": run.h, "c_b": run.c_b, "box": run.box, "periodic": periodic, "walls": run.walls}
+    return values, coordinates, attributes
+
+
+def _space(run: SurfaceRun) -> Parts:
+    """Return what the dataset of a run in three dimensions has besides its series."""
+    at_point = ("time", "vesicle", "point")
+    values = {
+        "points": ((*at_point, "xyz"), run.points),
+        "velocity": ((*at_point, "xyz"), run.velocity),
+        "tension": (at_point, run.tension),
+        "coefficients": (("time", "vesicle", "xyz", "harmonic"), run.coefficients),
+        "triangles": (("triangle", "corner"), run.triangles),
+    }
+    return values, {"xyz": ["x", "y", "z"], "vesicle": np.arange(1, run.vesicles + 1)}, {"degree": run.degree}

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
 
-import h5py
 import numpy as np
 
 from petves.curves import smooth_curve, solid_outline, trigonometric
 from petves.errors import RunError as RunError
-from petves.files import read_file, read_summary
-from petves.measures import ENERGIES
-from petves.runfiles import read_frames, read_h5, read_series
-
-#: Vesicles up to which series.csv has columns of each.
-FEW = 40
+from petves.runfiles import RunFolder, read_frames, read_h5
+from petves.runfiles import read_series as read_series
 
 #: Points of a vesicle's smooth curve for each of its markers.
 CURVE = 6
@@ -25,16 +18,10 @@ CURVE = 6
 #: Periods of the box that a curve may span.
 WIDEST = 1000
 
-#: Columns that every run has.
-COLUMNS = (
-    "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall nsolve tension_its"
-    " bending_its coupled_its"
-).split()
 
-
-@dataclass
-class Run:
-    """One run of petves.
+@dataclass(kw_only=True)
+class Run(RunFolder):
+    """One run of petves in the plane.
 
     Attributes
     ----------
@@ -79,79 +66,25 @@ class Run:
     In the methods `frame` is the number of a saved time, -1 the last one, and `vesicle` the number of a vesicle from 0.
     """
 
-    folder: Path
-    series: dict[str, np.ndarray]
     box: np.ndarray
     h: float
-    nu: float
     c_b: float
-    time: np.ndarray
     pressure_gradient: np.ndarray
     markers: np.ndarray
     velocity: np.ndarray
-    tension: np.ndarray
     stretch: np.ndarray
     start: np.ndarray
     viscosity_ratio: np.ndarray
-    bending: np.ndarray
     obstacles: list[np.ndarray] = field(default_factory=list)
     obstacle_markers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_kinds: list[str] = field(default_factory=list)
     tracers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
-    summary: dict[str, Any] = field(default_factory=dict)
-
-    @classmethod
-    def read(cls, folder: str | Path) -> Run:
-        """Read a run's folder; fluid fields are left on disk, see `fields`.
-
-        The run may be going on, or have been killed: what its files have whole is read, series.csv to its last whole row
-        and run.h5 to its last saved time.
-
-        Raises
-        ------
-        RunError
-            When the folder or one of its files is missing or broken, or has no row or saved time yet. Where a killed run
-            has left run.h5 broken, a restart makes it anew, and `read_series` reads series.csv alone.
-        """
-        folder = Path(folder)
-        if not folder.is_dir():
-            raise RunError(f"{folder}: no such folder; give the -output_dir of a run")
-        frames = read_h5(folder / "run.h5", read_frames)
-        series, summary = read_series(folder / "series.csv"), folder / "summary.json"
-        missing = [name for name in COLUMNS if name not in series]
-        if missing:
-            raise RunError(f"{folder / 'series.csv'}: has no column {missing[0]}")
-        ended = read_file(summary, read_summary) if summary.exists() else {}
-        return cls(folder=folder, series=series, summary=ended, **frames)
-
-    @property
-    def vesicles(self) -> int:
-        """Number of vesicles."""
-        return len(self.start) - 1
-
-    def each(self, name: str) -> np.ndarray:
-        """Return the column `name` of every vesicle at every step ("area", "center_x"), shape (steps, vesicles).
-
-        From the suffixed columns of series.csv, or above 40 vesicles from vesicles.h5, whose last rows may be NaN while the run
-        goes on.
-        """
-        names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
-        if names and names[0] in self.series:
-            return np.stack([self.series[column] for column in names], axis=1)
-        values = np.full((len(self.series["step"]), self.vesicles), np.nan)
-        found = read_h5(self.folder / "vesicles.h5", lambda file: file[name][: len(values)] if name in file else None)
-        if found is None:
-            raise RunError(f"column {name}: vesicles have none of that name")
-        values[: len(found)] = found
-        return values
-
-    def columns_of_each(self) -> list[str]:
-        """Return the names that `each` takes from vesicles.h5; none up to 40 vesicles."""
-        path = self.folder / "vesicles.h5"
-        if not path.is_file() or self.vesicles <= FEW:
-            return []
-        return read_h5(path, lambda file: [name for name in file if name not in ("step", "time")])
+    columns = (
+        "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall nsolve"
+        " tension_its bending_its coupled_its"
+    )
+    read_frames = staticmethod(read_frames)
 
     @functools.cached_property
     def periods(self) -> tuple[float, float]:
@@ -190,39 +123,10 @@ class Run:
             shifts.append(period * np.arange(np.floor(ends[0]) + 1, np.ceil(ends[1])))
         return [outline + (x, y) for x in shifts[0] for y in shifts[1]]
 
-    def options(self) -> dict[str, str]:
-        """Return the options in force (resolved.opts), without the dash; empty when the file is missing."""
-        return dict(self._in_force)
-
-    @functools.cached_property
-    def _in_force(self) -> dict[str, str]:
-        path = self.folder / "resolved.opts"
-        lines = read_file(path, lambda x: x.read_text(errors="replace")).splitlines() if path.exists() else []
-        words = [line[1:].split(" ", maxsplit=1) for line in lines if line.startswith("-")]
-        return {word[0]: word[1].strip('"') if len(word) > 1 else "" for word in words}
-
     def fields(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return u, v, p at cell centres at a saved time, each of shape (ny, nx)."""
         place = range(len(self.time))[frame]  # a run that goes on may have more
         return read_h5(self.folder / "run.h5", lambda file: tuple(file["fluid"][name][place] for name in "uvp"))
-
-    def energies(self) -> dict[str, np.ndarray]:
-        """Return the energies that the run has at each step (length^4/time^2), by name, such as bending.
-
-        Those that are zero at all steps are left out: without gravity or contact, and the kinetic one of unbounded fluid,
-        which is not computed.
-        """
-        columns = {name: self.series.get(f"energy_{name}") for name in ENERGIES}
-        found = {name: values for name, values in columns.items() if values is not None and values.any()}
-        return found or {"kinetic": self.series["energy_kinetic"]}
-
-    def frame_at(self, time: float) -> int:
-        """Return the number of the saved time nearest to a time of the run."""
-        low, high = self.time[[0, -1]]
-        slack = 1e-9 * max(abs(low), abs(high))
-        if not low - slack <= time <= high + slack:
-            raise RunError(f"time {time:g}: not in the run; allowed: {low:g} to {high:g}")
-        return int(np.argmin(np.abs(self.time - time)))
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:
         """Return x, shape (nx,), and y, shape (ny,), of the cell centres."""

@@ -7,7 +7,7 @@ import pytest
 
 import petves
 from petves.run import Run
-from petves.views import curves, field, movie, plot
+from petves.views import field, movie, plot
 from petves.views.figures import Look
 from petves.views.movie import movie as film
 from petves.views.plot import plot_run
@@ -43,8 +43,7 @@ def figures(monkeypatch):
     """The figures by their file's name, in place of files."""
     kept = {}
     keep = lambda figure, path, look=None: kept.update({path.name: figure}) or path
-    for module in (plot, field, curves):
-        monkeypatch.setattr(module, "save_figure", keep)
+    monkeypatch.setattr(plot, "save_figure", keep)
     return kept
 
 
@@ -127,14 +126,14 @@ def test_total_energy_is_that_of_all_parts(folders):
     assert set(Run.read(folders("free")).energies()) == {"bending"}
 
 
-def test_an_angle_is_drawn_as_series_has_it_and_steady_with_the_rest(folders, figures):
+def test_an_angle_is_drawn_as_series_has_it_and_steady_with_the_rest(folders):
     run = Run.read(folders("pair"))
     run.series["inclination_1"] = np.linspace(1.6, 1.601, len(run.series["time"])) % np.pi
     run.series["inclination_1"][-1] -= np.pi  # a jump of the branch, not of the vesicle
-    plot.plot_motion(run)
-    drawn = figures["motion.png"].axes[0].get_lines()[0].get_ydata()
+    angles = plot.plot_motion(run).axes[0]
+    drawn = angles.get_lines()[0].get_ydata()
     assert drawn[-1] == pytest.approx(run.series["inclination_1"][-1] / np.pi) and np.ptp(drawn) < 0.001
-    assert not figures["motion.png"].axes[0].texts, "the vesicles still come nearer to one another"
+    assert not angles.texts, "the vesicles still come nearer to one another"
 
 
 def test_kinds_have_colours_and_names(folders, figures):

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import difflib
 import re
-from pathlib import Path
 from typing import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from petves.dataset import load, unit
 from petves.quantities import line, probe, wall_shear_stress
 from petves.run import Run, RunError
-from petves.views.figures import MANY, PLAIN, Look, dress, legend_above, new_figure, save_figure
+from petves.views.figures import MANY, PLAIN, Look, dress, legend_above, new_figure
 
 USUAL = ("gap", "pressure_drop", "obstacle_torque", "viscosity")  # columns drawn where a run has them
 Panel = tuple[str, str, list[tuple[str, np.ndarray]]]
@@ -24,7 +24,7 @@ def spelled(text: str) -> str:
     return re.sub(r"\^(\d)", r"$^\1$", text)
 
 
-def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, path: Path, look: Look) -> Path:
+def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, look: Look) -> Figure:
     """Draw panels one above the other over one x; labels stand over the first panel that has them."""
     told: list[str] = [""]
     figure, axes = new_figure(6, 1.0 + 1.7 * len(panels), rows=len(panels), look=look)
@@ -39,7 +39,7 @@ def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, path: Path, loo
             legend_above(panel, columns=4)
     axes[-1].set_xlabel(xlabel)
     figure.align_ylabels(axes)
-    return save_figure(figure, path, look)
+    return figure
 
 
 def columns_of(run: Run, name: str) -> list[tuple[str, np.ndarray]]:
@@ -52,8 +52,8 @@ def columns_of(run: Run, name: str) -> list[tuple[str, np.ndarray]]:
     return [(key[len(name) + 1 :], values) for key, values in own.items()]
 
 
-def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> list[Path]:
-    """Draw columns of series.csv over time into series.png, a panel each: those asked for, else those of USUAL with values.
+def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> Figure | None:
+    """Draw columns of series.csv over time, a panel each: those asked for, else those of USUAL with values.
 
     A name without a number stands for all columns that have it with one (obstacle_torque). Without a column no picture.
     """
@@ -72,28 +72,26 @@ def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> l
     if not columns:
         found = {name: curves for name, curves in found.items() if any(np.nan_to_num(y).any() for _, y in curves)}
     panels = [(name, unit(name), curves) for name, curves in found.items()]
-    if not panels:
-        return []
-    return [draw_curves(run.series["time"], panels, "time $t$", run.folder / "series.png", look)]
+    return draw_curves(run.series["time"], panels, "time $t$", look) if panels else None
 
 
-def plot_points(run: Run, points: Sequence[Sequence[float]], look: Look = PLAIN) -> Path:
-    """Draw u, v and the total pressure at points over the saved times into points.png."""
+def plot_points(run: Run, points: Sequence[Sequence[float]], look: Look = PLAIN) -> Figure:
+    """Draw u, v and the total pressure at points over the saved times."""
     found = probe(load(run.folder, "xarray"), points)
     labels = [f"({x:g}, {y:g})" for x, y in points]
     panels = [(f"${name}$", unit(name), list(zip(labels, found[name].values.T))) for name in "uvp"]
-    return draw_curves(run.time, panels, "time $t$", run.folder / "points.png", look)
+    return draw_curves(run.time, panels, "time $t$", look)
 
 
-def plot_line(run: Run, ends: Sequence[float], frame: int = -1, look: Look = PLAIN, name: str = "line.png") -> Path:
+def plot_line(run: Run, ends: Sequence[float], look: Look = PLAIN, frame: int = -1) -> Figure:
     """Draw u, v and the total pressure at a saved time along a line; `ends` are x, y of its begin and of its end."""
     found = line(load(run.folder, "xarray").isel(time=frame), ends[:2], ends[2:])
     panels = [(f"${name}$", unit(name), [("", found[name].values)]) for name in "uvp"]
     xlabel = f"distance (length), $t$ = {run.time[frame]:.4g}"
-    return draw_curves(found["distance"].values, panels, xlabel, run.folder / name, look)
+    return draw_curves(found["distance"].values, panels, xlabel, look)
 
 
-def plot_walls(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "walls.png") -> Path:
+def plot_walls(run: Run, look: Look = PLAIN, frame: int = -1) -> Figure:
     """Draw the shear stress on the walls at a saved time: on bottom and top along x, on left and right along y."""
     found = wall_shear_stress(load(run.folder, "xarray").isel(time=frame))
     if not found:
@@ -107,4 +105,4 @@ def plot_walls(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "walls
         dress(panel, xlabel=f"${along}$ (length)", ylabel=f"wall shear stress\n({spelled(unit('p'))})")
         legend_above(panel)
     axes[0].set_title(f"$t$ = {run.time[frame]:.4g}", loc="right", fontsize=10)
-    return save_figure(figure, run.folder / name, look)
+    return figure

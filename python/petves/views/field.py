@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Callable, Sequence
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from petves.run import Run
-from petves.views.figures import MANY, PLAIN, Look, Sheet, add_bar, new_sheet, save_figure
+from petves.run import Run, RunError
+from petves.views.figures import MANY, PLAIN, Look, Sheet, add_bar, new_sheet
 from petves.views.window import Window
 
 STREAMS = 1.1  # density of streamlines
@@ -50,6 +50,13 @@ FIELDS = {
     "stream_function": FieldKind(Window.stream_function, r"stream function $\psi$ (length$^2$/time)", "PRGn"),
 }
 TENSION = r"tension $\sigma$ (length$^3$/time$^2$)"
+
+
+def field_kind(name: str) -> FieldKind:
+    """Return how a field is drawn; RunError when there is none of that name."""
+    if name not in FIELDS:
+        raise RunError(f"field {name}: unknown; allowed: {', '.join(FIELDS)}")
+    return FIELDS[name]
 
 
 def reach(values: np.ndarray) -> float:
@@ -151,23 +158,17 @@ def box_sheet(window: Window, look: Look, panels: int, bars: bool = True, last: 
     return new_sheet(x1 - x0, y1 - y0, panels, bars, last, look)
 
 
-def plot_field(
-    run: Run,
-    frame: int = -1,
-    look: Look = PLAIN,
-    fields: Sequence[str] = ("pressure", "speed"),
-    name: str = "field.png",
-) -> Path:
+def plot_field(run: Run, look: Look = PLAIN, frame: int = -1, fields: Sequence[str] = ("pressure", "speed")) -> Figure:
     """Draw the membranes, coloured by tension, over fields at a saved time, the speed with streamlines.
 
     The dotted outline is the initial one.
     """
     window = Window(run, frame, look.follow)
     sheet = box_sheet(window, look, panels=len(fields), last=run.vesicles > 0)
-    limits = (run.tension[frame].min(), run.tension[frame].max()) if run.vesicles else (0.0, 1.0)
+    limits = run.tension_range(frame)
     drawn: list[Artist] = []
     for panel, bar, field in zip(sheet.panels, sheet.bars, fields):
-        kind = FIELDS[field]
+        kind = field_kind(field)
         image = draw_field(panel, kind, window, look)
         frame_of = ", in the frame of the vesicle" if window.moving and field in ("speed", "stream_function") else ""
         add_bar(bar, image, kind.label + frame_of)
@@ -177,7 +178,7 @@ def plot_field(
     if sheet.last is not None:
         add_bar(sheet.last, drawn[-1], TENSION)
     sheet.panels[0].set_title(f"$t$ = {run.time[frame]:g}", loc="left", fontsize=10)
-    return save_figure(sheet.figure, run.folder / name, look)
+    return sheet.figure
 
 
 def draw_streamlines(axes: Axes, window: Window) -> None:

@@ -16,9 +16,9 @@ from petves.files import writing
 from petves.progress import progress_bar
 from petves.run import Run, RunError
 from petves.surfaces import SurfaceRun
-from petves.views.field import FIELDS, TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines, reach
+from petves.views.field import TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines, field_kind, reach
 from petves.views.figures import PLAIN, Look, add_bar
-from petves.views.surfaces import draw_surfaces, surface_figure, tension_limits
+from petves.views.surfaces import draw_surfaces, surface_figure
 from petves.views.window import Window
 
 DOTS = 150  # an inch
@@ -71,11 +71,9 @@ def movie(
         raise RunError(f"{path}: allowed: a name that ends in .mp4 or .gif")
     if path.suffix == ".mp4" and not ffmpeg:
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
-    if field not in FIELDS:
-        raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
     frames, look = chosen_frames(run, every, begin, end), replace(look, width=width / DOTS)
     if isinstance(run, SurfaceRun):
-        figure, limits = surface_figure(look), tension_limits(run, frames)
+        figure, limits = surface_figure(look), run.tension_range(frames)
         draw = lambda frame: draw_surfaces(figure, run, frame, limits, look)
     else:
         figure, draw = _plane(run, frames, field, streamlines, look)
@@ -112,11 +110,11 @@ def _plane(
     run: Run, frames: np.ndarray, field: str, streamlines: bool, look: Look
 ) -> tuple[Figure, Callable[[int], None]]:
     """Return a figure, and what draws the membranes over a field at a saved time on it; colours are those of all frames."""
-    kind = FIELDS[field]
+    kind = field_kind(field)
     windows = {frame: Window(run, frame, look.follow) for frame in frames}
     ends = [(reach(values), np.max(np.abs(values))) for values in map(kind.values, windows.values())]
     highest, most = np.max(ends, axis=0)
-    limits = (run.tension[frames].min(), run.tension[frames].max()) if run.vesicles else (0.0, 1.0)
+    limits = run.tension_range(frames)
     sheet = box_sheet(windows[frames[0]], look, panels=1, last=run.vesicles > 0)
     (panel,) = sheet.panels
 

@@ -10,15 +10,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
 
+from petves.dataset import load
 from petves.measures import ENERGIES
 from petves.run import Run, RunError
-from petves.surfaces import SurfaceRun, is_space
+from petves.runfiles import RunFolder
+from petves.surfaces import SurfaceRun
 from petves.views.curves import plot_columns, plot_line, plot_points, plot_walls
-from petves.views.field import FIELDS, OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
+from petves.views.field import OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
 from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look
 from petves.views.figures import dress, legend_above, new_figure, new_sheet, save_figure
-from petves.views.surfaces import plot_surfaces
+from petves.views.surfaces import plot_course, plot_surfaces
 from petves.views.window import Window
 
 OUTLINES = 7  # outlines in the picture of shapes
@@ -72,38 +75,45 @@ def plot_run(
     RunError
         When the run cannot be read, or not be drawn this way.
     """
-    if is_space(folder):
+    run = load(folder, "numpy")
+    frame, at = (-1, "") if time is None else (run.frame_at(time), f"_t{time:g}")
+    figures: dict[str, Figure | None] = {}
+    if isinstance(run, SurfaceRun):
         if columns or fields or len(points) or line is not None or walls:
             raise RunError(
                 f"{folder}: a run in three dimensions, which has pictures of its surfaces alone; allowed: --time"
             )
-        return plot_surfaces(SurfaceRun.read(folder), look, time)
-    run = Run.read(folder)
-    for field in fields:
-        if field not in FIELDS:
-            raise RunError(f"field {field}: unknown; allowed: {', '.join(FIELDS)}")
-    frame = -1 if time is None else run.frame_at(time)
-    tail = ".png" if time is None else f"_t{time:g}.png"
-    drawn = plot_columns(run, columns, look) if columns else []
+        figures = {f"surfaces{at}": plot_surfaces(run, look, frame)} | (
+            {} if at else {"course": plot_course(run, look)}
+        )
+        return _saved(run, figures, look)
+    if columns:
+        figures["series"] = plot_columns(run, columns, look)
     if len(points):
-        drawn.append(plot_points(run, points, look))
+        figures["points"] = plot_points(run, points, look)
     if line is not None:
-        drawn.append(plot_line(run, line, frame, look, f"line{tail}"))
+        figures[f"line{at}"] = plot_line(run, line, look, frame)
     if walls:
-        drawn.append(plot_walls(run, frame, look, f"walls{tail}"))
+        figures[f"walls{at}"] = plot_walls(run, look, frame)
     if fields or (time is not None and line is None and not walls):
-        drawn.append(plot_field(run, frame, look, fields or ("pressure", "speed"), f"field{tail}"))
+        figures[f"field{at}"] = plot_field(run, look, frame, fields or ("pressure", "speed"))
         if run.vesicles and not fields:
-            drawn.append(plot_tension(run, frame, look, f"tension{tail}"))
-    if drawn:
-        return drawn
-    drawn = [plot_energy(run, look), plot_field(run, look=look)]
-    if run.vesicles:
-        drawn += [plot(run, look=look) for plot in (plot_conservation, plot_motion, plot_tension, plot_shapes)]
-    return drawn + plot_columns(run, look=look)
+            figures[f"tension{at}"] = plot_tension(run, look, frame)
+    if not figures:
+        figures = {"energy": plot_energy(run, look), "field": plot_field(run, look)}
+        if run.vesicles:
+            figures |= {"conservation": plot_conservation(run, look), "motion": plot_motion(run, look)}
+            figures |= {"tension": plot_tension(run, look), "shapes": plot_shapes(run, look)}
+        figures["series"] = plot_columns(run, look=look)
+    return _saved(run, figures, look)
 
 
-def plot_energy(run: Run, look: Look = PLAIN) -> Path:
+def _saved(run: RunFolder, figures: dict[str, Figure | None], look: Look) -> list[Path]:
+    """Write the figures that there are into the run's folder, by their names; return the files."""
+    return [save_figure(figure, run.folder / f"{name}.png", look) for name, figure in figures.items() if figure]
+
+
+def plot_energy(run: RunFolder, look: Look = PLAIN) -> Figure:
     """Draw the energies of a run and their sum over the initial sum (or over the largest, if that is zero or less)."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time, parts = run.series["time"], run.energies()
@@ -118,10 +128,10 @@ def plot_energy(run: Run, look: Look = PLAIN) -> Path:
         axes.plot(time, values / scale, styles[part], label=f"{part} $E_{part[0].upper()}$")
     dress(axes, xlabel="time $t$", ylabel=f"$E/{name}$" if name != "1" else "$E$ (length$^4$/time$^2$)")
     legend_above(axes)
-    return save_figure(figure, run.folder / "energy.png", look)
+    return figure
 
 
-def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
+def plot_conservation(run: RunFolder, look: Look = PLAIN) -> Figure:
     """Draw the relative errors of area, and of length where no membrane stretches, against time on a logarithmic axis."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time = run.series["time"][1:]
@@ -132,7 +142,7 @@ def plot_conservation(run: Run, look: Look = PLAIN) -> Path:
         axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
     dress(axes, xlabel="time $t$", ylabel="relative error")
     legend_above(axes)
-    return save_figure(figure, run.folder / "conservation.png", look)
+    return figure
 
 
 def is_steady(time: np.ndarray, values: np.ndarray, scale: float | None = None) -> bool:
@@ -165,7 +175,7 @@ def _draw_course(
         axes.annotate(f"{steady:.4g}", (1.0, steady), xycoords=("axes fraction", "data"), color=color, **place)
 
 
-def plot_motion(run: Run, look: Look = PLAIN) -> Path:
+def plot_motion(run: Run, look: Look = PLAIN) -> Figure:
     """Draw the inclination, without jumps by pi, and the tank-treading frequency against time; steady values are marked."""
     if run.vesicles > MANY:
         return _plot_motion_of_many(run, look)
@@ -188,10 +198,10 @@ def plot_motion(run: Run, look: Look = PLAIN) -> Path:
     axes[-1].set_xlabel("time $t$")
     if run.vesicles > 1:
         legend_above(axes[0], columns=4)
-    return save_figure(figure, run.folder / "motion.png", look)
+    return figure
 
 
-def _plot_motion_of_many(run: Run, look: Look) -> Path:
+def _plot_motion_of_many(run: Run, look: Look) -> Figure:
     """Draw how vesicles lie: the mean axis of all (of twice the angle), and how well they agree with it."""
     figure, (axes,) = new_figure(6, 4, look=look)
     turned = np.mean(np.exp(2j * run.each("inclination")), axis=1)
@@ -200,10 +210,10 @@ def _plot_motion_of_many(run: Run, look: Look) -> Path:
     axes.plot(time, np.abs(turned), "C1--", label="order $|\\langle e^{2i\\theta}\\rangle|$")
     dress(axes, xlabel="time $t$")
     legend_above(axes)
-    return save_figure(figure, run.folder / "motion.png", look)
+    return figure
 
 
-def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "tension.png") -> Path:
+def plot_tension(run: Run, look: Look = PLAIN, frame: int = -1) -> Figure:
     """Draw the tension, and the stretch of membranes that stretch, against the phase angle about the centroid at a saved time."""
     shown = [(run.tension[frame], TENSION), (run.stretch[frame], "stretch")][: 1 + bool((run.stretch != 1).any())]
     figure, panels = new_figure(6 * len(shown), 4, columns=len(shown), look=look)
@@ -220,7 +230,7 @@ def plot_tension(run: Run, frame: int = -1, look: Look = PLAIN, name: str = "ten
         dress(axes, xlabel=rf"phase angle $\varphi/\pi$ at $t$ = {run.time[frame]:.4g}", ylabel=label, xlim=(-1, 1))
     if few and run.vesicles > 1:
         legend_above(panels[0], columns=4)
-    return save_figure(figure, run.folder / name, look)
+    return figure
 
 
 def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, follow: int | None = None) -> None:
@@ -238,7 +248,7 @@ def draw_outlines(axes: Axes, run: Run, frame: int, color: object, style: str, f
             axes.plot(*points.T, ":", color=color, lw=1.0, zorder=OVER_STREAMS)
 
 
-def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
+def plot_shapes(run: Run, look: Look = PLAIN) -> Figure:
     """Draw outlines at evenly spread saved times in the colours of time, with marker 0 as a dot.
 
     With obstacles, which are grey where they are last, or where a vesicle has left a periodic box, the whole box is drawn, outlines cut at the seam.
@@ -268,10 +278,10 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Path:
     ticks = np.arange(len(frames))[::-each][::-1] + 0.5
     bar = sheet.figure.colorbar(scale, cax=sheet.bars[0], label="time $t$", ticks=ticks, orientation="horizontal")
     bar.set_ticklabels([f"{run.time[frame]:.4g}" for frame in frames[::-each][::-1]])
-    return save_figure(sheet.figure, run.folder / "shapes.png", look)
+    return sheet.figure
 
 
-def _plot_first_and_last(run: Run, look: Look) -> Path:
+def _plot_first_and_last(run: Run, look: Look) -> Figure:
     """Draw many vesicles in the box at the first and the last saved time, kinds in colours that a legend below names."""
     _, kinds = kinds_of(run)
     sheet = box_sheet(Window(run, 0), look, panels=2, bars=False, last=len(kinds) > 1)
@@ -288,4 +298,4 @@ def _plot_first_and_last(run: Run, look: Look) -> Path:
             xlim=window.limits[:2], ylim=window.limits[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)"
         )
         panel.set_title(f"$t$ = {run.time[frame]:.4g}", fontsize=10)
-    return save_figure(sheet.figure, run.folder / "shapes.png", look)
+    return sheet.figure

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import base64
-import dataclasses
+import io
 import json
-import re
-import tempfile
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -17,7 +15,7 @@ from matplotlib import colormaps
 from petves.files import read_file, shown, writing
 from petves.run import Run
 from petves.views.field import reach
-from petves.views.figures import MANY, filled
+from petves.views.figures import MANY, PLAIN, filled
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
 from petves.views.window import Window
 from petves.views.words import key_numbers, scene_in_words
@@ -72,18 +70,14 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
 def _plots(run: Run) -> str:
     """Return the plots as figures with embedded pictures."""
     figures = []
-    with tempfile.TemporaryDirectory() as folder:
-        elsewhere = dataclasses.replace(run, folder=Path(folder))
-        for name in ("resolved.opts", "vesicles.h5"):  # what pictures read besides
-            (Path(folder) / name).symlink_to(run.folder.resolve() / name)
-        for draw, caption in CAPTIONS.items():
-            if draw is not plot_energy and not run.vesicles:
-                continue
-            picture = base64.b64encode(draw(elsewhere).read_bytes()).decode()
-            figures.append(
-                f'<figure><img alt="{escape(caption)}" src="data:image/png;base64,{picture}">'
-                f"<figcaption>{escape(caption)}</figcaption></figure>"
-            )
+    for draw, caption in CAPTIONS.items():
+        if draw is not plot_energy and not run.vesicles:
+            continue
+        file = io.BytesIO()
+        draw(run).savefig(file, dpi=PLAIN.dpi)
+        picture, caption = base64.b64encode(file.getvalue()).decode(), escape(caption)
+        image = f'<img alt="{caption}" src="data:image/png;base64,{picture}">'
+        figures.append(f"<figure>{image}<figcaption>{caption}</figcaption></figure>")
     return "\n".join(figures)
 
 
@@ -109,7 +103,7 @@ def _data(run: Run) -> dict[str, Any]:
         "shift": 0.0 if run.options().get("membrane_derivative") == "spectral" else 0.5,
         "markers": np.round(run.markers[frames], digits).tolist(),
         "tension": [[float(f"{x:.4g}") for x in row] for row in tension],
-        "tension_limits": [float(tension.min()), float(tension.max())] if tension.size else [0.0, 1.0],
+        "tension_limits": run.tension_range(frames),
         "fields": {
             "speed": _field(speed, False, "viridis", "speed (length/time)"),
             "pressure": _field(pressure, True, "RdBu_r", "pressure (length²/time²)"),

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
-
 import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -15,7 +12,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from petves.surfaces import SurfaceRun
 from petves.views.curves import draw_curves
 from petves.views.field import TENSION
-from petves.views.figures import PLAIN, Look, blank_figure, save_figure
+from petves.views.figures import PLAIN, Look, blank_figure
 
 #: Views: what is on the two axes of the picture, and from where one looks (elevation, azimuth in degrees).
 SIDES = {"$x, y$": (90, -90), "$x, z$": (0, -90), "$y, z$": (0, 0)}
@@ -23,27 +20,17 @@ LIGHT = np.array([0.3, -0.5, 0.8])  # where it comes from
 SHADE = 0.55  # of a surface that looks away from the light
 
 
-def plot_surfaces(run: SurfaceRun, look: Look = PLAIN, time: float | None = None) -> list[Path]:
-    """Draw the surfaces at a saved time, the last one if none is given, and the course of the run; return the files."""
-    frame = -1 if time is None else run.frame_at(time)
+def plot_surfaces(run: SurfaceRun, look: Look = PLAIN, frame: int = -1) -> Figure:
+    """Draw the surfaces at a saved time."""
     figure = surface_figure(look)
-    draw_surfaces(figure, run, frame, tension_limits(run, [frame]), look)
-    drawn = [save_figure(figure, run.folder / ("surfaces.png" if time is None else f"surfaces_t{time:g}.png"), look)]
-    if time is None:
-        drawn.append(_plot_course(run, look))
-    return drawn
+    draw_surfaces(figure, run, frame, run.tension_range(frame), look)
+    return figure
 
 
 def surface_figure(look: Look) -> Figure:
     """Return a figure with the proportions of the four views and their colour bar."""
     width = look.width or 7
     return blank_figure(width, width * 0.86)
-
-
-def tension_limits(run: SurfaceRun, frames: Sequence[int] | np.ndarray) -> tuple[float, float]:
-    """Return the least and the largest tension at some saved times, which differ."""
-    chosen = run.tension[frames]
-    return float(chosen.min()), float(max(chosen.max(), chosen.min() + 1e-12))
 
 
 def draw_surfaces(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[float, float], look: Look) -> None:
@@ -72,7 +59,7 @@ def draw_surfaces(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[flo
     figure.colorbar(colours, cax=bar, orientation="horizontal", label=TENSION)
 
 
-def _plot_course(run: SurfaceRun, look: Look) -> Path:
+def plot_course(run: SurfaceRun, look: Look = PLAIN) -> Figure:
     """Draw energy, angle and axes of the first vesicle over time."""
     series = run.series
     axes = [(f"{name} axis", series[f"axis_{name}"]) for name in ("long", "middle", "short")]
@@ -81,4 +68,4 @@ def _plot_course(run: SurfaceRun, look: Look) -> Path:
         ("angle / $\\pi$", "", [("", series["inclination"] / np.pi)]),
         ("half axes", "length", axes),
     ]
-    return draw_curves(series["time"], panels, "time $t$", run.folder / "course.png", look)
+    return draw_curves(series["time"], panels, "time $t$", look)

@@ -101,7 +101,8 @@ def key_numbers(run: Run) -> list[tuple[str, str]]:
         rows += _sizes(run) + _motions(run)
         losses = {name: f"{np.abs(s[f'{name}_error']).max():.1e}" for name in ("area", "length")}
         rows += [(f"worst {name} error", value) for name, value in losses.items()]
-        rows.append(("last tension, least and largest", f"{run.tension[-1].min():.4g}, {run.tension[-1].max():.4g}"))
+        low, high = run.tension_range(-1)
+        rows.append(("last tension, least and largest", f"{low:.4g}, {high:.4g}"))
     rows += _forces(run)
     rows.append(("largest |div u| left", f"{s['div_max'].max():.1e}"))
     means = {name: s[f"{name}_its"][1:] for name in ("coupled", "tension", "bending")}
