@@ -1,7 +1,6 @@
 """petves from Python: run simulations, read, draw, compare and reproduce runs."""
 
-from __future__ import annotations
-
+import pkgutil
 from typing import Any
 
 from petves.errors import Error
@@ -29,11 +28,7 @@ def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: reading runs needs no PETSc, simulating no HDF5."""
     if name not in _HOME:
         raise AttributeError(f"module 'petves' has no attribute {name!r}")
-    import importlib
-
-    module, _, inside = _HOME[name].partition(":")
-    found = importlib.import_module(f"petves.{module}")
-    return getattr(found, inside) if inside else found
+    return pkgutil.resolve_name(f"petves.{_HOME[name]}")
 
 
 def __dir__() -> list[str]:

@@ -1,7 +1,5 @@
 """Command line: ``petves`` of pip, ``python3 -m petves``: ``run|plot|movie|watch|report|compare|sweep|numbers|scenes ...``."""
 
-from __future__ import annotations
-
 import argparse
 import difflib
 import io
@@ -19,6 +17,8 @@ from petves.program import become, scene_file, scene_files, scenes
 
 TOOLS = ("plot", "movie", "watch", "report", "compare", "sweep", "numbers", "scenes")
 """The commands; other words are the program's own."""
+LEFT_OUT = {"argument_default": argparse.SUPPRESS}
+"""Of parsers whose options, where they are left out, have the function's own defaults."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -31,47 +31,41 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-def _add_look(command: argparse.ArgumentParser, *names: str) -> None:
-    """Add options of how pictures look."""
-    known: dict[str, dict[str, Any]] = {
-        "format": dict(metavar="FORMAT", default="png", help="png, pdf or svg (png)"),
-        "dpi": dict(type=float, default=120, help="dots an inch (120)"),
-        "width": dict(type=float, metavar="INCHES", help="width of each picture; letters keep their size"),
-        "cmap": dict(metavar="NAME", help="matplotlib's colour map of the speed (viridis)"),
-        "follow": dict(type=int, nargs="?", const=1, metavar="VESICLE", help="follow a vesicle (1) in a periodic box"),
-    }
-    for name in names:
-        command.add_argument(f"--{name}", **known[name])
-
-
 def _add_pictures(commands: argparse._SubParsersAction) -> None:
-    plot = commands.add_parser("plot", help="draw a run's folder into pictures in that folder")
-    plot.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    run, seen = (argparse.ArgumentParser(add_help=False, **LEFT_OUT) for _ in range(2))
+    run.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    seen.add_argument("--cmap", metavar="NAME", help="matplotlib's colour map of the speed (viridis)")
+    following = dict(nargs="?", const=1, metavar="VESICLE", help="follow a vesicle (1) in a periodic box")
+    seen.add_argument("--follow", type=int, **following)
+    both = dict(parents=[run, seen], **LEFT_OUT)
+    plot = commands.add_parser("plot", **both, help="draw a run's folder into pictures in that folder")
+    plot.add_argument("--format", metavar="FORMAT", help="png, pdf or svg (png)")
+    plot.add_argument("--dpi", type=float, help="dots an inch (120)")
+    plot.add_argument("--width", type=float, metavar="INCHES", help="width of each picture; letters keep their size")
     plot.add_argument("--time", type=float, help="field and tension, or --line, --walls, at the nearest saved time")
-    names = dict(nargs="+", default=[], metavar="NAME")
+    names = dict(nargs="+", metavar="NAME")
     plot.add_argument("--column", dest="columns", **names, help="columns of series.csv over time")
     plot.add_argument("--field", dest="fields", **names, help="membranes over fields: vorticity, ...")
-    point = dict(nargs=2, type=float, action="append", default=[], metavar=("X", "Y"))
+    point = dict(nargs=2, type=float, action="append", metavar=("X", "Y"))
     plot.add_argument("--point", dest="points", **point, help="u, v, p at a point over time; again for a further one")
     plot.add_argument("--line", nargs=4, type=float, metavar=("X", "Y", "X", "Y"), help="u, v, p along a line")
     plot.add_argument("--walls", action="store_true", help="the shear stress along the walls")
-    _add_look(plot, "format", "dpi", "width", "cmap", "follow")
-    film = commands.add_parser("movie", help="film the membrane over the flow: mp4 (with ffmpeg) or gif")
-    film.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    film = commands.add_parser("movie", **both, help="film the membrane over the flow: mp4 (with ffmpeg) or gif")
     film.add_argument("--output", metavar="FILE", help="FILE.mp4 or FILE.gif (movie.mp4 or movie.gif in DIR)")
-    film.add_argument("--field", metavar="NAME", default="speed", help="under it: speed, pressure, ... (speed)")
-    film.add_argument("--rate", type=float, default=15, help="pictures a second (15)")
-    film.add_argument("--every", type=int, default=1, metavar="N", help="one saved time in N (1)")
+    film.add_argument("--field", metavar="NAME", help="under it: speed, pressure, ... (speed)")
+    film.add_argument("--rate", type=float, help="pictures a second (15)")
+    film.add_argument("--every", type=int, metavar="N", help="one saved time in N (1)")
     film.add_argument("--from", type=float, dest="begin", metavar="TIME", help="first time (the first saved)")
     film.add_argument("--to", type=float, dest="end", metavar="TIME", help="last time (the last saved)")
-    film.add_argument("--width", type=int, default=1080, metavar="PIXELS", help="width of the film (1080)")
+    film.add_argument("--width", type=int, metavar="PIXELS", help="width of the film (1080)")
     film.add_argument("--streamlines", action="store_true", help="streamlines too")
-    _add_look(film, "cmap", "follow")
-    live = commands.add_parser("watch", help="draw a run that goes on into watch.html, anew until it ends")
-    live.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    live = commands.add_parser(
+        "watch", parents=[run], help="draw a run that goes on into watch.html, anew until it ends"
+    )
     live.add_argument("--every", type=float, default=10, metavar="SECONDS", help="between two drawings (10)")
-    page = commands.add_parser("report", help="write one HTML file about a run that opens anywhere, offline")
-    page.add_argument("folder", metavar="DIR", help="the run's -output_dir")
+    page = commands.add_parser(
+        "report", parents=[run], help="write one HTML file about a run that opens anywhere, offline"
+    )
     page.add_argument("--output", metavar="FILE", help="the file (report.html in DIR)")
 
 
@@ -95,7 +89,8 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     grid.add_argument("--ranks", type=int, default=1, help="MPI ranks of each run (1)")
     words = dict(nargs="?", const="", metavar="WORDS")
     grid.add_argument("--slurm", **words, help="submit it as a job array, one run a task, with these words for sbatch")
-    cell = commands.add_parser("numbers", help="options of a scene, and chi and Re, from numbers in SI units")
+    told = "options of a scene, and chi and Re, from numbers in SI units"
+    cell = commands.add_parser("numbers", help=told, **LEFT_OUT)
     for name, needed, what in (
         ("radius", True, "perimeter/(2 pi), m"),
         ("bending", True, "bending modulus, J"),
@@ -116,11 +111,11 @@ def _run(command: str, words: dict[str, Any]) -> list[object]:
         from petves.views.figures import Look
 
         own = ("format", "dpi", "width", "cmap", "follow") if command == "plot" else ("cmap", "follow")
-        words["look"] = Look(**{name: words.pop(name) for name in own})
+        words["look"] = Look(**{name: words.pop(name) for name in own if name in words})
     if command == "scenes":
         return scenes()
     if command == "numbers":
-        return laboratory.lines(**{name: value for name, value in words.items() if value is not None})
+        return laboratory.lines(**words)
     if command == "sweep":
         words["grid"] = {option.lstrip("-"): values for option, *values in words.pop("vary")}
         if words["slurm"] is not None:

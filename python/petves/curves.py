@@ -1,7 +1,5 @@
 """Curves through markers, by Fourier series, and the closed outlines of obstacles whose own curves are not closed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 KINDS = ("closed", "spanning", "open")  # as run.h5 numbers them

@@ -1,7 +1,5 @@
 """Reading files that may be damaged, or are just being written; writing files whole."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import tempfile
@@ -49,13 +47,14 @@ def read_summary(path: Path) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[Path]:
-    """Yield a name to write to; the file comes to `path` when it is whole.
+    """Yield a name to write to; the file comes to `path`, in a folder that is made for it, when it is whole.
 
     A link at `path` is refused, as its file may be anything of the user's; RunError also when nothing can be written.
     """
     if path.is_symlink() or (path.exists() and not path.is_file()):
         raise RunError(f"{path}: cannot be written (it is a link, a folder or a device); allowed: the name of a file")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".petves-", dir=path.parent) as place:
             yield Path(place) / path.name
             (Path(place) / path.name).replace(path)

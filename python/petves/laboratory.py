@@ -1,7 +1,5 @@
 """From the laboratory's numbers to the program's options."""
 
-from __future__ import annotations
-
 import math
 
 from petves.errors import Error

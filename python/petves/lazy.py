@@ -1,11 +1,8 @@
 """Arrays of HDF5 files that are read when they are used, for xarray."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from xarray.backends import BackendArray
 from xarray.core import indexing
@@ -26,19 +23,12 @@ class FileArray(BackendArray):
 
     def _part(self, key: tuple[Any, ...]) -> np.ndarray:
         """Return a part by integers and by slices with steps forward."""
-        rows, *rest = key
-        one = not isinstance(rows, slice)
-        start, stop, step = (slice(rows, rows + 1) if one else rows).indices(self.shape[0])
-
-        def read(file: h5py.File) -> np.ndarray:
-            end = min(stop, len(file[self.name]))
-            values = file[self.name][(slice(min(start, end), end, step), *rest)]
-            missing = len(range(start, stop, step)) - len(values)
-            if missing:
-                values = np.concatenate([values, np.full((missing, *values.shape[1:]), np.nan)])
-            return values[0] if one else values
-
-        return read_h5(self.path, read)
+        one = not isinstance(key[0], slice)
+        rows = slice(*(slice(key[0], key[0] + 1) if one else key[0]).indices(self.shape[0]))
+        values = read_h5(self.path, lambda file: file[self.name][(rows, *key[1:])])
+        missing = len(range(rows.start, rows.stop, rows.step)) - len(values)
+        values = np.concatenate([values, np.full((missing, *values.shape[1:]), np.nan, values.dtype)])
+        return values[0] if one else values
 
 
 def lazy_array(path: Path, name: str, rows: int) -> indexing.LazilyIndexedArray:

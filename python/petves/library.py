@@ -4,8 +4,6 @@ Errors come back as codes; `Simulation` turns them into `petves.Error` with the 
 PETSc, and its objects and petves' are made by the same PETSc library.
 """
 
-from __future__ import annotations
-
 import ctypes
 import functools
 import os
@@ -49,6 +47,7 @@ _text = ctypes.c_char_p
 Flow = ctypes.CFUNCTYPE(ctypes.c_int, _double, Int, _pointer(_double), _pointer(_double), ctypes.c_void_p)
 # An MPI communicator is passed as the eight bytes where petsc4py keeps it: a pointer (Open MPI) or an int (MPICH).
 _communicator = ctypes.c_void_p
+_numbers = ctypes.c_void_p  # an array's place: array.ctypes
 
 SIGNATURES = {
     "PetvesSetQuiet": (ctypes.c_int,),
@@ -71,12 +70,12 @@ SIGNATURES = {
     "SimulationGetTime": (Handle, _pointer(Int), _pointer(_double)),
     "SimulationGetObject": (Handle, _text, _pointer(Handle)),
     "SimulationGetSizes": (Handle, _pointer(Int), _pointer(Int), _pointer(Int)),
-    "SimulationGetObstacles": (Handle, _pointer(Int), _pointer(Int), _pointer(_double)),
+    "SimulationGetObstacles": (Handle, _pointer(Int), _pointer(Int), _numbers),
     "SimulationGetOption": (Handle, Int, _pointer(_text), _text, ctypes.c_size_t),
     "SimulationGetColumn": (Handle, Int, _pointer(_text)),
-    "SimulationGetRow": (Handle, Int, _pointer(_double)),
-    "SimulationGetCellVelocity": (Handle, _pointer(_double), _pointer(_double)),
-    "SimulationGetCellPressure": (Handle, _pointer(_double)),
+    "SimulationGetRow": (Handle, Int, _numbers),
+    "SimulationGetCellVelocity": (Handle, _numbers, _numbers),
+    "SimulationGetCellPressure": (Handle, _numbers),
     "PetscOptionsCreate": (_pointer(Handle),),
     "PetscOptionsDestroy": (_pointer(Handle),),
     "PetscOptionsSetValue": (Handle, _text, _text),

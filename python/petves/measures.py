@@ -1,6 +1,4 @@
-"""The measures of a simulation's present state, as properties: the columns of series.csv; and what follows from them."""
-
-from __future__ import annotations
+"""The measures of a simulation's present state, as attributes: the columns of series.csv; and what follows from them."""
 
 import ctypes
 import difflib
@@ -61,13 +59,10 @@ def half_periods(time: np.ndarray, inclination: np.ndarray) -> np.ndarray:
     return np.diff(passes)
 
 
-def _column(name: str) -> property:
-    """Return a property: a column of series.csv after the last step."""
-    return property(lambda self: self.measure(name))
-
-
 class Measures:
     """Measures after the last step; with several vesicles totals, worst values or means, and `each` for one by one.
+
+    Every column of series.csv is an attribute, such as
 
     Attributes
     ----------
@@ -98,25 +93,14 @@ class Measures:
     _rows: list[bytes]
     _columns: dict[str, int]
 
-    time = _column("time")
-    dt = _column("dt")
-    energy_kinetic = _column("energy_kinetic")
-    energy_bending = _column("energy_bending")
-    energy_contact = _column("energy_contact")
-    area = _column("area")
-    length = _column("length")
-    area_error = _column("area_error")
-    length_error = _column("length_error")
-    edge_ratio = _column("edge_ratio")
-    inclination = _column("inclination")
-    frequency = _column("frequency")
-    normal_speed = _column("normal_speed")
-    energy_gravity = _column("energy_gravity")
-    gap = _column("gap")
-    viscosity = _column("viscosity")
-    normal_stress = _column("normal_stress")
-    div_max = _column("div_max")
-    surface_div_max = _column("surface_div_max")
+    def __getattr__(self, name: str) -> float:
+        """Return a column of series.csv after the last step, as an attribute of its name."""
+        if name.startswith("_") or name not in self._columns:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        return self._row[self._columns[name]]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *getattr(self, "_columns", ())]
 
     def measure(self, name: str) -> float:
         """Return the value of a column of series.csv after the last step.
@@ -138,12 +122,10 @@ class Measures:
     def each(self, name: str) -> np.ndarray:
         """Return the column `name` of the single vesicles, shape (vesicles,); errors as of `measure`."""
         column = self._place(name)
-        values, row = [], np.empty(len(self._columns))
-        pointer = row.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
-        for vesicle in range(self.vesicles):
-            self._lib.SimulationGetRow(self._open(), vesicle, pointer)
-            values.append(row[column])
-        return np.array(values)
+        rows = np.empty((self.vesicles, len(self._columns)))
+        for vesicle, row in enumerate(rows):
+            self._lib.SimulationGetRow(self._open(), vesicle, row.ctypes)
+        return rows[:, column]
 
     @property
     def history(self) -> dict[str, np.ndarray]:

@@ -1,7 +1,5 @@
 """Running the program bin/petves, or where there is none (pip) the one that is in libpetves.so."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import re

@@ -1,7 +1,5 @@
 """Progress bars, where a person looks on."""
 
-from __future__ import annotations
-
 import contextlib
 from typing import Callable, Iterator
 

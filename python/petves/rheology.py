@@ -2,8 +2,6 @@
 stress of every step; what is here is of saved times, and of single vesicles. `run` is ``petves.load(folder, "numpy")``,
 `frame` the number of a saved time, -1 the last one."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from petves.run import Run, RunError

@@ -1,7 +1,5 @@
 """The files that a run leaves in its output folder, as arrays."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Reading what a run writes: series.csv, and HDF5 files without their fields; and what all runs have."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -204,9 +202,7 @@ def _check_own(file: h5py.File) -> None:
 def read_frames(file: h5py.File) -> dict[str, Any]:
     """Return what a Run has of run.h5, by its names. A frame's values are written before its time, which counts it."""
     if file.attrs.get("dim", 2) == 3:
-        raise RunError(
-            f"{file.filename}: a run in three dimensions; allowed: one in the plane, or petves plot, movie or load"
-        )
+        raise RunError(f"{file.filename}: a run in three dimensions; allowed: petves.load, which reads both kinds")
     time, box = file["time"][:], np.asarray(file.attrs["box"], float)
     if not len(time):
         raise RunError(f"{file.filename}: no saved time in it")

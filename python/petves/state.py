@@ -1,7 +1,5 @@
 """The state of a simulation as arrays and as PETSc objects."""
 
-from __future__ import annotations
-
 import ctypes
 from pathlib import Path
 
@@ -99,7 +97,7 @@ class State(Measures):
         start = (Int * (count.value + 1))()
         ask(self._open(), ctypes.byref(count), start, None)
         markers = np.empty((start[-1], 2))
-        ask(self._open(), ctypes.byref(count), start, markers.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        ask(self._open(), ctypes.byref(count), start, markers.ctypes)
         return np.split(markers, start[1:-1]) if count.value else []
 
     @property
@@ -130,15 +128,14 @@ class State(Measures):
         """Return the velocity, background included, at this rank's cell centres: u and v, new arrays (rows, cells in
         x). Collective."""
         u, v = (np.empty(self._sizes[5:7]) for _ in range(2))
-        pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (u, v)]
-        self._call("SimulationGetCellVelocity", self._open(), *pointers)
+        self._call("SimulationGetCellVelocity", self._open(), u.ctypes, v.ctypes)
         return u, v
 
     def cell_pressure(self) -> np.ndarray:
         """Return the pressure at this rank's cell centres, as run.h5 has it: a new array (rows, cells in x). In unbounded
         fluid it is zero far away. Collective."""
         p = np.empty(self._sizes[5:7])
-        self._call("SimulationGetCellPressure", self._open(), p.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
+        self._call("SimulationGetCellPressure", self._open(), p.ctypes)
         return p
 
     def cell_centers(self) -> tuple[np.ndarray, np.ndarray]:

@@ -1,7 +1,5 @@
 """Runs in three dimensions: the files that they leave, as arrays."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

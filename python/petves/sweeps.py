@@ -1,7 +1,5 @@
 """A grid of options, run several at a time on this machine, into one tidy table."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import fcntl
@@ -30,8 +28,7 @@ FORBIDDEN = "output_dir|restart|options_.*|python.*|dll_.*|.*debugger.*|on_error
 SAFE = " !$&'()*+,-.:;<>?@[]^_`{|}~"  # what a folder's name has as it is: no slash, =, # nor %
 LONGEST = 200  # characters of a folder's name
 
-Ended = tuple[str, str]
-"""Status and message of a run."""
+Ended = tuple[str, str]  # status and message of a run
 
 
 def sweep(
@@ -72,7 +69,7 @@ def sweep(
     if options_file and not base:
         raise Error(f"{options_file}: no such file, or nothing in it; allowed: a file of options")
     command()
-    shared = _made(folder) / "shared.opts"
+    shared = folder / "shared.opts"
     if not shared.is_file():
         _replace(shared, base)
     elif shared.read_text() != base:
@@ -107,7 +104,7 @@ def submit(
     task = [sys.executable, "-m", "petves", "sweep", str(folder), "--ranks", str(ranks), "--jobs", "1"]
     task += ["--options-file", str(Path(options_file).resolve())] if options_file else []
     varied = ([word for name, value in point.items() for word in ("--vary", name, value)] for point in points)
-    _replace(_made(folder) / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
+    _replace(folder / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
     wrapped = f'eval "$(sed -n "$SLURM_ARRAY_TASK_ID p" {shlex.quote(str(folder / "tasks"))})"'
     words = [f"--array=1-{len(points)}", f"--ntasks={ranks}", "--job-name=petves", *shlex.split(slurm)]
     try:
@@ -134,15 +131,6 @@ def _options_of(path: Path) -> str:
         return f"{line[1]}{line[2] if Path(line[2]).exists() or not beside.exists() else beside}"
 
     return re.sub(r"^(\s*-\w+_file\s+)([^\s#\"']+)", found, path.read_text(), flags=re.MULTILINE)
-
-
-def _made(folder: Path) -> Path:
-    """Return a folder that is there."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Error(f"{folder}: cannot be written ({error.strerror}); allowed: a folder with space") from None
-    return folder
 
 
 def _replace(path: Path, text: str) -> None:
@@ -184,7 +172,6 @@ def _run_point(folder: Path, point: dict[str, str], ranks: int) -> Ended:
     try:
         kind, message = _launch(home, words, ranks)
         if kind in REMEMBERED:
-            home.mkdir(exist_ok=True)
             _replace(home / "status.json", json.dumps({"status": kind, "message": message}) + "\n")
     except RunError as error:  # of what has ended well the next call finds the end state
         kind, message = "failed", str(error)

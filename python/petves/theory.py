@@ -1,7 +1,5 @@
 """Lines that simulations are drawn against."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Curves: columns of series.csv over time, values at points and along lines and walls."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from typing import Sequence

@@ -1,7 +1,5 @@
 """The membranes over the flow."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Callable, Sequence
 

@@ -1,7 +1,5 @@
 """What all pictures share: how they look, figures without a display, files."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A film of the membrane over the flow."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Pictures of a run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Sequence
 
@@ -132,13 +130,15 @@ def plot_energy(run: RunFolder, look: Look = PLAIN) -> Figure:
 
 
 def plot_conservation(run: RunFolder, look: Look = PLAIN) -> Figure:
-    """Draw the relative errors of area, and of length where no membrane stretches, against time on a logarithmic axis."""
+    """Draw the relative errors of area, volume, and length where no membrane stretches, against time, logarithmically."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time = run.series["time"][1:]
-    labels = {"area_error": "area, $|A - A_0|/A_0$"}
-    if "energy_stretching" not in run.series:
-        labels["length_error"] = "length, $|L - L_0|/L_0$"
-    for (column, label), style in zip(labels.items(), ("-", "--")):
+    kept = [name for name in ("area", "length", "volume") if f"{name}_error" in run.series]
+    if "energy_stretching" in run.series:
+        kept.remove("length")
+    for name, style in zip(kept, ("-", "--")):
+        column, letter = f"{name}_error", name[0].upper()
+        label = f"{name}, $|{letter} - {letter}_0|/{letter}_0$"
         axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
     dress(axes, xlabel="time $t$", ylabel="relative error")
     legend_above(axes)

@@ -1,7 +1,5 @@
 """Pictures and films of runs in three dimensions."""
 
-from __future__ import annotations
-
 import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable

@@ -1,7 +1,5 @@
 """What part of a periodic box is seen: the box as it is, or one that goes along with a vesicle."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from petves.quantities import stream_function_of, vorticity_of
@@ -94,7 +92,7 @@ class Window:
         points, low, periods = self.run.tracers[self.frame] - self.origin, self.limits[::2], np.array(self.run.periods)
         return np.where(periods > 0, low + (points - low) % np.where(periods > 0, periods, 1), points)
 
-    def images(self, vesicle: int, frame: int | None = None, curve: bool = True) -> list[np.ndarray]:
-        """Return a vesicle's outlines that are seen, of the window's time or of another, each of shape (n + 1, 2)."""
-        outline = (self.run.curve if curve else self.run.outline)(self.frame if frame is None else frame, vesicle)
+    def images(self, vesicle: int, curve: bool = True) -> list[np.ndarray]:
+        """Return a vesicle's outlines that are seen, smooth or through its markers, each of shape (n + 1, 2)."""
+        outline = (self.run.curve if curve else self.run.outline)(self.frame, vesicle)
         return self.run.images_of(outline, self.limits, self.origin)
