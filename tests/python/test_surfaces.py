@@ -6,14 +6,15 @@ from harness import SITE, run_petves, run_python
 
 import petves
 from petves.surfaces import SurfaceRun
+from petves.views.words import key_numbers, scene_in_words
 
 SCENE = "-dim 3 -flow_type shear -vesicle_bending 0.1 -sphere_degree 8 -time_step 0.2 -time_end 0.4 -output_every 0.2"
+PAIR = f"{SCENE} -vesicle_count 2 -vesicle_center -2,0.8,0,2,-0.8,0"
 
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory):
-    options = f"{SCENE} -vesicle_count 2 -vesicle_center -2,0.8,0,2,-0.8,0"
-    return run_petves(tmp_path_factory.mktemp("pair") / "run", options).folder
+    return run_petves(tmp_path_factory.mktemp("pair") / "run", PAIR).folder
 
 
 def test_surfaces_are_closed_and_have_their_volume(pair):
@@ -43,9 +44,30 @@ def test_pictures_and_a_film(pair):
         petves.plot(pair, columns=["gap"])
 
 
-def test_what_is_of_the_plane_says_so(pair):
-    with pytest.raises(petves.RunError, match="a run in three dimensions; allowed"):
-        petves.report(pair)
+def test_report_has_words_numbers_pictures_and_warnings(pair, tmp_path):
+    page = petves.report(pair, tmp_path / "page.html").read_text()
+    assert page.count("data:image/png;base64,") == 3 and "<td></td>" not in page and "http" not in page
+    assert "<p>2 vesicles" in page and "reduced volume 0.9, spherical harmonics of degree 8 each" in page
+    run = petves.load(pair, kind="numpy")
+    numbers = dict(key_numbers(run))
+    assert float(numbers["chi = rate nu R0^3/c_b"]) == pytest.approx(1 / 0.1) and "last rotation about z" in numbers
+    volume = run.series["volume_1"][0] + run.series["volume_2"][0]
+    assert float(numbers["volume of all vesicles"]) == pytest.approx(volume, rel=1e-4)
+    run.summary["warnings"] = ["grids of near vesicles grow"]
+    assert scene_in_words(run)[-1] == "Warning: grids of near vesicles grow"
+
+
+def test_compare_says_what_differs(pair, tmp_path):
+    stiff = run_petves(tmp_path / "stiff", f"{PAIR} -vesicle_bending 0.2").folder
+    lines, picture = petves.compare(pair, stiff, tmp_path / "two.png")
+    assert (
+        "| -vesicle_bending | 0.10000000000000001 | 0.20000000000000001 |" in lines and picture.stat().st_size > 10000
+    )
+    a, b = (petves.load(folder, kind="numpy").points for folder in (pair, stiff))
+    assert f"Markers: {np.linalg.norm(a - b, axis=-1).max():.3e} apart at most (length) at 3 common" in lines[-1]
+
+
+def test_a_simulation_in_space_is_refused():
     done = run_python("import petves; petves.Simulation(dim=3)", good=False)
     assert done.returncode == 1 and "-dim 3: not from Python or C; allowed: 2, or petves run" in done.stderr
 

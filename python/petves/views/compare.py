@@ -1,13 +1,13 @@
 """Two runs side by side."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 
+from petves.dataset import load
 from petves.files import shown
 from petves.run import Run
+from petves.runfiles import RunFolder
 from petves.views.plot import draw_outlines, dress, new_figure, save_figure
 
 COUNTERS = ("step", "wall", "nsolve", "tension_its", "bending_its", "coupled_its")
@@ -37,7 +37,7 @@ def compare(first: str | Path, second: str | Path, output: str | Path | None = N
     RunError
         When a run cannot be read.
     """
-    runs = Run.read(first), Run.read(second)
+    runs = load(first, "numpy"), load(second, "numpy")
     lines = _options(*runs) + _columns(*runs) + [_markers(*runs)]
     return lines, _draw(runs, Path(output) if output else runs[0].folder / "compare.png")
 
@@ -47,7 +47,7 @@ def _table(header: list[str], rows: list[list[str]]) -> list[str]:
     return ["| " + " | ".join(line) + " |" for line in (header, ["---"] * len(header), *rows)] + [""]
 
 
-def _options(a: Run, b: Run) -> list[str]:
+def _options(a: RunFolder, b: RunFolder) -> list[str]:
     one, two = a.options(), b.options()
     names = [name for name in {**one, **two} if name != "output_dir" and one.get(name) != two.get(name)]
     if not names:
@@ -56,7 +56,7 @@ def _options(a: Run, b: Run) -> list[str]:
     return _table(["option", shown(a.folder), shown(b.folder)], rows)
 
 
-def _columns(a: Run, b: Run) -> list[str]:
+def _columns(a: RunFolder, b: RunFolder) -> list[str]:
     end = min(a.series["time"][-1], b.series["time"][-1])
     at = a.series["time"][a.series["time"] <= end * (1 + SAME)]
     rows = []
@@ -70,25 +70,30 @@ def _columns(a: Run, b: Run) -> list[str]:
     return _table(["column", f"first at t = {end:g}", "second", "largest difference"], rows)
 
 
-def _markers(a: Run, b: Run) -> str:
+def _markers(a: RunFolder, b: RunFolder) -> str:
     pairs = [(i, j) for i, t in enumerate(a.time) for j in np.flatnonzero(np.isclose(b.time, t, rtol=0, atol=SAME))]
-    if a.markers.shape[1] != b.markers.shape[1]:
-        return f"Markers are not compared: {a.markers.shape[1]} and {b.markers.shape[1]} of them."
+    one, two = (run.markers if isinstance(run, Run) else run.points for run in (a, b))
+    if one.shape[1:] != two.shape[1:]:
+        return f"Markers are not compared: {one[0].size} and {two[0].size} of their coordinates."
     if not pairs or not a.vesicles:
         return "Markers are not compared: there are no common saved times."
-    gaps = [np.linalg.norm(a.markers[i] - b.markers[j], axis=1).max() for i, j in pairs]
+    gaps = [np.linalg.norm(one[i] - two[j], axis=-1).max() for i, j in pairs]
     return f"Markers: {max(gaps):.3e} apart at most (length) at {len(pairs)} common saved times, {gaps[-1]:.3e} at the last."
 
 
-def _draw(runs: tuple[Run, Run], path: Path) -> Path:
+def _draw(runs: tuple[RunFolder, RunFolder], path: Path) -> Path:
     figure, axes = new_figure(13, 4, columns=3)
     for run, color, style in zip(runs, ("C0", "C1"), ("-", "--")):
         label = shown(run.folder)
         time = run.series["time"]
         axes[0].plot(time, sum(run.energies().values()), style, color=color, label=label)
         axes[1].plot(time, np.unwrap(run.series["inclination"], period=np.pi), style, color=color, label=label)
-        draw_outlines(axes[2], run, -1, color, style)
-    dress(axes[0], 10, xlabel="time $t$", ylabel="energy (length$^4$/time$^2$)")
+        if isinstance(run, Run):
+            draw_outlines(axes[2], run, -1, color, style)
+        else:
+            axes[2].plot(*run.points[-1, ..., :2].reshape(-1, 2).T, ".", color=color, ms=2)
+    power = 4 if isinstance(runs[0], Run) else 5
+    dress(axes[0], 10, xlabel="time $t$", ylabel=f"energy (length$^{power}$/time$^2$)")
     dress(axes[1], xlabel="time $t$", ylabel=r"inclination $\theta$ (radians)")
     dress(axes[2], xlabel="$x$ (length)", ylabel="$y$ (length)", aspect="equal", title="last saved outlines")
     return save_figure(figure, path)

@@ -1,7 +1,5 @@
 """One self-contained HTML file about a run."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json
@@ -12,11 +10,14 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
+from petves.dataset import load
 from petves.files import read_file, shown, writing
 from petves.run import Run
+from petves.runfiles import RunFolder
 from petves.views.field import reach
 from petves.views.figures import MANY, PLAIN, filled
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
+from petves.views.surfaces import plot_course, plot_surfaces
 from petves.views.window import Window
 from petves.views.words import key_numbers, scene_in_words
 
@@ -28,6 +29,11 @@ CAPTIONS = {
     plot_conservation: "What the scheme loses of area and length.",
     plot_tension: "Tension around the membrane at the last saved time.",
     plot_shapes: "Outlines.",
+}
+IN_SPACE = {
+    plot_surfaces: "The surfaces at the last saved time, coloured by tension.",
+    plot_course: "Energy, angle and axes.",
+    plot_conservation: "What the scheme loses of area and volume.",
 }
 
 
@@ -46,10 +52,11 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     RunError
         When the run cannot be read.
     """
-    run = Run.read(folder)
+    run = load(folder, "numpy")
     told = read_file(run.folder / "resolved.opts", lambda _: (key_numbers(run), scene_in_words(run)))
     rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in told[0])
     words = "".join(f"<p>{escape(text)}</p>" for text in told[1])
+    data = _data(run) if isinstance(run, Run) else None  # surfaces have no view with a slider, but pictures
     few = " The dot is marker 0, a point of the membrane; dotted: the first outline." if run.vesicles <= MANY else ""
     membranes = f"Membranes are coloured by their tension.{few} " if run.vesicles else ""
     parts = {
@@ -59,7 +66,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "NOTE": f"{membranes}The colours of the fluid span the range of each time, but for a few cells that have much more.",
         "PLOTS": _plots(run),
         "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in run.options().items())),
-        "DATA": json.dumps(_data(run), separators=(",", ":")).replace("</", "<\\/"),
+        "DATA": json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
     }
     path = Path(output) if output else run.folder / "report.html"
     with writing(path) as fresh:
@@ -67,10 +74,10 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     return path
 
 
-def _plots(run: Run) -> str:
+def _plots(run: RunFolder) -> str:
     """Return the plots as figures with embedded pictures."""
     figures = []
-    for draw, caption in CAPTIONS.items():
+    for draw, caption in (CAPTIONS if isinstance(run, Run) else IN_SPACE).items():
         if draw is not plot_energy and not run.vesicles:
             continue
         file = io.BytesIO()
