@@ -59,13 +59,11 @@ def _add_pictures(commands: argparse._SubParsersAction) -> None:
     film.add_argument("--to", type=float, dest="end", metavar="TIME", help="last time (the last saved)")
     film.add_argument("--width", type=int, metavar="PIXELS", help="width of the film (1080)")
     film.add_argument("--streamlines", action="store_true", help="streamlines too")
-    live = commands.add_parser(
-        "watch", parents=[run], help="draw a run that goes on into watch.html, anew until it ends"
-    )
+    told = "draw a run that goes on into watch.html, anew until it ends"
+    live = commands.add_parser("watch", parents=[run], help=told)
     live.add_argument("--every", type=float, default=10, metavar="SECONDS", help="between two drawings (10)")
-    page = commands.add_parser(
-        "report", parents=[run], help="write one HTML file about a run that opens anywhere, offline"
-    )
+    told = "write one HTML file about a run that opens anywhere, offline"
+    page = commands.add_parser("report", parents=[run], help=told)
     page.add_argument("--output", metavar="FILE", help="the file (report.html in DIR)")
 
 
@@ -77,14 +75,9 @@ def _add_tables(commands: argparse._SubParsersAction) -> None:
     grid = commands.add_parser("sweep", help="run a grid of options, several at a time, into one table")
     grid.add_argument("folder", metavar="DIR", help="where the runs and sweep.csv go; a second call goes on")
     grid.add_argument("--options-file", metavar="FILE", help="options that all runs share")
-    grid.add_argument(
-        "--vary",
-        nargs="+",
-        action="append",
-        required=True,
-        metavar=("OPTION", "VALUE"),
-        help="an option without its dash and its values; again for each further option",
-    )
+    varied = dict(nargs="+", action="append", required=True, metavar=("OPTION", "VALUE"))
+    each = "an option without its dash and its values; again for each further option"
+    grid.add_argument("--vary", **varied, help=each)
     grid.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time (one a core)")
     grid.add_argument("--ranks", type=int, default=1, help="MPI ranks of each run (1)")
     words = dict(nargs="?", const="", metavar="WORDS")

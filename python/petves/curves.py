@@ -81,13 +81,10 @@ def solid_outline(curves: list[np.ndarray], kinds: list[str], k: int, box: np.nd
     curve = spanning_curve(points, span, fold)
     across = int(span[0] != 0)  # the direction from one such curve to the next
     left = np.sign(span[0]) if across else -np.sign(span[1])
-    beyond = []
-    for j, other in enumerate(curves):
-        if j != k and kinds[j] == "spanning" and np.dot(span_of(other, box), span) < 0:
-            away = left * (other[:, across].mean() - points[:, across].mean())
-            beyond += [(away, j)] if away > 0 else []
-    if beyond:
-        other = curves[min(beyond)[1]]
+    others = [c for c, kind in zip(curves, kinds) if kind == "spanning" and np.dot(span_of(c, box), span) < 0]
+    away = {left * (other[:, across].mean() - points[:, across].mean()): other for other in others}
+    if beyond := [distance for distance in away if distance > 0]:
+        other = away[min(beyond)]
         back = spanning_curve(other, span_of(other, box), fold)
         back[:, 1 - across] += curve[-1, 1 - across] - back[0, 1 - across]
     else:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from petves.run import Run, RunError
-from petves.surfaces import SurfaceRun, is_space
+from petves.run import Run, RunError, SurfaceRun
 
 if TYPE_CHECKING:
     import xarray
@@ -65,7 +64,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Da
         their files when they are used, a frame at a time where a frame is asked for; ``.chunk(time=1)`` makes dask's
         arrays of them. Run: see there, and `unit`. Of a run in three dimensions: points, velocity (time, vesicle, point,
         xyz), tension (time, vesicle, point), coefficients (time, vesicle, xyz, harmonic), triangles (triangle, corner),
-        or a `petves.surfaces.SurfaceRun`.
+        or a `petves.run.SurfaceRun`.
 
     Raises
     ------
@@ -74,7 +73,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Da
     """
     if kind not in ("auto", "xarray", "numpy"):
         raise RunError(f"kind {kind}: unknown; allowed: auto, xarray, numpy")
-    run = (SurfaceRun if is_space(folder) else Run).read(folder)
+    run = Run.read(folder)
     if kind == "numpy":
         return run
     try:
@@ -94,12 +93,8 @@ def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Da
     return data
 
 
-Parts = tuple[dict[str, Any], dict[str, Any], dict[str, Any]]
-"""Variables, coordinates and attributes of a dataset."""
-
-
-def _plane(run: Run) -> Parts:
-    """Return what the dataset of a run in the plane has besides its series."""
+def _plane(run: Run) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """Return variables, coordinates and attributes that the dataset of a run in the plane has besides its series."""
     from petves.lazy import lazy_array
 
     frames, steps, member = len(run.time), len(run.series["step"]), np.arange(1, run.vesicles + 1)
@@ -123,10 +118,8 @@ def _plane(run: Run) -> Parts:
     if run.obstacles:
         moving = len(run.obstacle_markers) > 0
         places = run.obstacle_markers if moving else np.concatenate(run.obstacles)
-        values |= {
-            "obstacles": (at_obstacle[not moving :], places),
-            "obstacle_force": (at_obstacle, run.obstacle_force),
-        }
+        values["obstacles"] = at_obstacle[not moving :], places
+        values["obstacle_force"] = at_obstacle, run.obstacle_force
         sizes = [len(points) for points in run.obstacles]
         coordinates["obstacle"] = ("obstacle_marker", np.repeat(np.arange(1, len(sizes) + 1), sizes))
     periodic = "".join(name for name, period in zip("xy", run.periods) if period)
@@ -134,8 +127,8 @@ def _plane(run: Run) -> Parts:
     return values, coordinates, attributes
 
 
-def _space(run: SurfaceRun) -> Parts:
-    """Return what the dataset of a run in three dimensions has besides its series."""
+def _space(run: SurfaceRun) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """Return variables, coordinates and attributes that the dataset of a run in three dimensions has besides its series."""
     at_point = ("time", "vesicle", "point")
     values = {
         "points": ((*at_point, "xyz"), run.points),

@@ -14,9 +14,13 @@ T = TypeVar("T")
 
 #: What Python, NumPy and h5py raise at a file that is not as a run writes it.
 BROKEN = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
-
-PAUSES = (0.01, 0.02, 0.05, 0.1, 0.2)
-"""Seconds before a file is read again: of a run that goes on it may be half written."""
+PAUSES = (
+    0.01,
+    0.02,
+    0.05,
+    0.1,
+    0.2,
+)  # seconds before a file is read again: of a run that goes on it may be half written
 
 
 def read_file(path: Path, read: Callable[[Path], T], hint: str = "") -> T:
@@ -24,17 +28,16 @@ def read_file(path: Path, read: Callable[[Path], T], hint: str = "") -> T:
 
     What `read` raises as RunError is not tried again. `hint` ends the message.
     """
-    for pause in (*PAUSES, None):
-        if not path.is_file():
-            raise RunError(f"{path}: no such file")
+    pauses = iter(PAUSES)
+    while path.is_file():
         try:
             return read(path)
         except BROKEN as error:
+            pause, why = next(pauses, None), f"{type(error).__name__}: {error}".splitlines()[0]
             if pause is None:
-                why = f"{type(error).__name__}: {error}".splitlines()[0]
                 raise RunError(f"{path}: cannot be read ({why}){hint}") from None
             time.sleep(pause)
-    raise AssertionError
+    raise RunError(f"{path}: no such file")
 
 
 def read_summary(path: Path) -> dict[str, Any]:
@@ -60,6 +63,13 @@ def writing(path: Path) -> Iterator[Path]:
             (Path(place) / path.name).replace(path)
     except OSError as error:
         raise RunError(f"{path}: cannot be written ({error.strerror or error}); allowed: a folder with space") from None
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a file that is whole or as it was; return its path."""
+    with writing(path) as fresh:
+        fresh.write_text(text, encoding="utf-8", errors="surrogateescape")
+    return path
 
 
 def shown(path: str | Path) -> str:

@@ -9,6 +9,7 @@ import functools
 import os
 import sys
 import threading
+from pathlib import Path
 from typing import Any, Callable
 
 import numpy as np
@@ -19,9 +20,8 @@ from petves.program import LIBRARY, candidates
 try:
     import petsc4py
 except ImportError:
-    raise Error(
-        "petsc4py is not installed, which simulating needs; allowed: python3-petsc4py, or that of the library's PETSc"
-    ) from None
+    allowed = "python3-petsc4py, or that of the library's PETSc"
+    raise Error(f"petsc4py is not installed, which simulating needs; allowed: {allowed}") from None
 
 if "petsc4py.PETSc" not in sys.modules:  # else it has been started; a .petscrc of the current folder may be anybody's
     petsc4py.init(["petves", "-skip_petscrc"])
@@ -34,8 +34,7 @@ PETSC_ERR_USER = 83
 PETSC_ERR_USER_INPUT = 95
 FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
 
-#: Held while C runs: PETSc serves one thread at a time.
-one_thread = threading.RLock()
+one_thread = threading.RLock()  # held while C runs: PETSc serves one thread at a time
 
 Int = ctypes.c_int64 if np.dtype(PETSc.IntType).itemsize == 8 else ctypes.c_int32
 Handle = ctypes.c_void_p
@@ -86,11 +85,10 @@ SIGNATURES = {
 @functools.lru_cache(maxsize=None)
 def library() -> ctypes.CDLL:
     """Return libpetves.so, loaded once."""
-    found = next((path for path in candidates() if path.is_file()), None)
+    found = next(filter(Path.is_file, candidates()), None)
     if found is None:
-        raise Error(
-            f"{LIBRARY}: not found in {', '.join(str(p.parent) for p in candidates())}; run make, or set PETVES_LIBRARY"
-        )
+        places = ", ".join(str(path.parent) for path in candidates())
+        raise Error(f"{LIBRARY}: not found in {places}; run make, or set PETVES_LIBRARY")
     try:
         lib = ctypes.CDLL(str(found))
         for name, arguments in SIGNATURES.items():

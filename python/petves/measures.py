@@ -7,8 +7,7 @@ import numpy as np
 
 from petves.errors import Error
 
-#: What energies there are, as in the columns energy_NAME.
-ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching", "potential")
+ENERGIES = ("bending", "kinetic", "gravity", "contact", "stretching", "potential")  # of the columns energy_NAME
 ENERGY_COLUMNS = [f"energy_{name}" for name in ENERGIES]
 
 
@@ -103,13 +102,7 @@ class Measures:
         return [*super().__dir__(), *getattr(self, "_columns", ())]
 
     def measure(self, name: str) -> float:
-        """Return the value of a column of series.csv after the last step.
-
-        Raises
-        ------
-        Error
-            When there is no column of this name: the line names all that there are.
-        """
+        """Return the column `name` of series.csv after the last step; `Error` names all that there are when it is none."""
         return self._row[self._place(name)]
 
     def _place(self, name: str) -> int:

@@ -25,15 +25,6 @@ OPEN_MPI = {
 PACKAGE = Path(__file__).resolve().parent
 
 
-def programs() -> list[Path]:
-    """Return where the program is looked for: ``PETVES``; bin of the repository, and of the prefix of ``make install``."""
-    if os.environ.get("PETVES"):
-        return [Path(os.environ["PETVES"])]
-    here = Path(sys.argv[0]).resolve()  # pip's own script of that name
-    prefixes = [*PACKAGE.parents[1:6], Path("/usr/local")]
-    return [place for prefix in prefixes if (place := prefix / "bin" / "petves") != here]
-
-
 def candidates() -> list[Path]:
     """Return where libpetves.so is looked for, in this order.
 
@@ -53,13 +44,19 @@ def _of_command() -> list[Path]:
 
 
 def _find() -> tuple[Path | None, Path | None]:
-    """Return the program, or the library that has it: the package's own before a program of another installation."""
-    found = next((place for place in programs() if place.is_file()), None)
-    library = next((place for place in candidates() if place.is_file()), None)
-    if os.environ.get("PETVES") or (found and library != PACKAGE / LIBRARY):
+    """Return the program, or the library that has it: the package's own before a program of another installation.
+
+    The program is ``PETVES``, or in ``bin`` of the repository or of the prefix of ``make install``.
+    """
+    asked, prefixes = os.environ.get("PETVES"), [*PACKAGE.parents[1:6], Path("/usr/local")]
+    places = [Path(asked)] if asked else [prefix / "bin" / "petves" for prefix in prefixes]
+    here = Path(sys.argv[0]).resolve()  # pip's own script of that name
+    found = next((place for place in places if place.is_file() and place != here), None)
+    library = next(filter(Path.is_file, candidates()), None)
+    if asked or (found and library != PACKAGE / LIBRARY):
         library = None
     if not library and not found:
-        raise Error(f"{os.environ.get('PETVES') or 'bin/petves'}: no such program; build it with make, or set PETVES")
+        raise Error(f"{asked or 'bin/petves'}: no such program; build it with make, or set PETVES")
     return (None, library) if library else (found, None)
 
 

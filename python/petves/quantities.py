@@ -52,9 +52,9 @@ def interpolate_of(
         low = np.floor(place).astype(int) if periodic[d] else np.clip(np.floor(place).astype(int), 0, n - 2)
         cells.append((low % n, (low + 1) % n, place - low))
     (i, i1, x), (j, j1, y) = cells
-    return (1 - y) * ((1 - x) * values[..., j, i] + x * values[..., j, i1]) + y * (
-        (1 - x) * values[..., j1, i] + x * values[..., j1, i1]
-    )
+    below = (1 - x) * values[..., j, i] + x * values[..., j, i1]
+    above = (1 - x) * values[..., j1, i] + x * values[..., j1, i1]
+    return (1 - y) * below + y * above
 
 
 def vorticity(data: xarray.Dataset) -> xarray.DataArray:

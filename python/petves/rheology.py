@@ -65,9 +65,8 @@ def mean_square_displacement(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """
     steps = np.diff(run.time)
     if len(steps) and np.ptp(steps) > 1e-3 * steps.max():
-        raise RunError(
-            f"{run.folder}: saved times are not even, {steps.min():g} to {steps.max():g} apart; allowed: even ones"
-        )
+        apart = f"{steps.min():g} to {steps.max():g} apart"
+        raise RunError(f"{run.folder}: saved times are not even, {apart}; allowed: even ones")
     places = centers(run)
     lags = [np.mean((places[lag:] - places[: len(places) - lag]) ** 2, axis=(0, 1)) for lag in range(len(places))]
     return run.time - run.time[0], np.array(lags)

@@ -1,20 +1,130 @@
-"""The files that a run leaves in its output folder, as arrays."""
+"""The files that a run leaves in its output folder, as arrays: of runs in the plane and in three dimensions."""
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
 
 from petves.curves import smooth_curve, solid_outline, trigonometric
 from petves.errors import RunError as RunError
-from petves.runfiles import RunFolder, read_frames, read_h5
+from petves.files import read_file, read_summary
+from petves.measures import ENERGIES
+from petves.runfiles import read_frames, read_h5
 from petves.runfiles import read_series as read_series
 
-#: Points of a vesicle's smooth curve for each of its markers.
-CURVE = 6
+CURVE = 6  # points of a vesicle's smooth curve for each of its markers
+WIDEST = 1000  # periods of the box that a curve may span
+FEW = 40  # vesicles up to which series.csv has columns of each
 
-#: Periods of the box that a curve may span.
-WIDEST = 1000
+
+@dataclass(kw_only=True)
+class RunFolder:
+    """What runs in the plane and in three dimensions have in common; `Run` says what the attributes are."""
+
+    folder: Path
+    series: dict[str, np.ndarray]
+    nu: float
+    time: np.ndarray
+    bending: np.ndarray
+    tension: np.ndarray
+    summary: dict[str, Any]
+    columns: ClassVar[str]
+
+    @staticmethod
+    def read(folder: str | Path) -> "Run | SurfaceRun":
+        """Read a run's folder, in the plane or in three dimensions; fields of the fluid are left on disk, see `Run.fields`.
+
+        The run may be going on, or have been killed: what its files have whole is read, series.csv to its last whole row
+        and run.h5 to its last saved time.
+
+        Raises
+        ------
+        RunError
+            When the folder or one of its files is missing or broken, or has no row or saved time yet. Where a killed run
+            has left run.h5 broken, a restart makes it anew, and `read_series` reads series.csv alone.
+        """
+        folder = Path(folder)
+        if not folder.is_dir():
+            raise RunError(f"{folder}: no such folder; give the -output_dir of a run")
+        frames = read_h5(folder / "run.h5", read_frames)
+        kind = SurfaceRun if "triangles" in frames else Run
+        series, summary = read_series(folder / "series.csv"), folder / "summary.json"
+        missing = [name for name in kind.columns.split() if name not in series]
+        if missing:
+            raise RunError(f"{folder / 'series.csv'}: has no column {missing[0]}")
+        ended = read_file(summary, read_summary) if summary.exists() else {}
+        return kind(folder=folder, series=series, summary=ended, **frames)
+
+    @property
+    def vesicles(self) -> int:
+        """Number of vesicles."""
+        return len(self.bending)
+
+    def each(self, name: str) -> np.ndarray:
+        """Return the column `name` of every vesicle at every step ("area", "center_x"), shape (steps, vesicles).
+
+        From the suffixed columns of series.csv, or above 40 vesicles from vesicles.h5, whose last rows may be NaN while the run
+        goes on.
+        """
+        names = [name] if self.vesicles == 1 else [f"{name}_{v + 1}" for v in range(self.vesicles)]
+        if names and names[0] in self.series:
+            return np.stack([self.series[column] for column in names], axis=1)
+        values = np.full((len(self.series["step"]), self.vesicles), np.nan)
+        found = read_h5(self.folder / "vesicles.h5", lambda file: file[name][: len(values)] if name in file else None)
+        if found is None:
+            raise RunError(f"column {name}: vesicles have none of that name")
+        values[: len(found)] = found
+        return values
+
+    def columns_of_each(self) -> list[str]:
+        """Return the names that `each` takes from vesicles.h5; none up to 40 vesicles."""
+        path = self.folder / "vesicles.h5"
+        if not path.is_file() or self.vesicles <= FEW:
+            return []
+        return read_h5(path, lambda file: [name for name in file if name not in ("step", "time")])
+
+    def options(self) -> dict[str, str]:
+        """Return the options in force (resolved.opts), without the dash; empty when the file is missing."""
+        return dict(self._in_force)
+
+    @functools.cached_property
+    def _in_force(self) -> dict[str, str]:
+        path = self.folder / "resolved.opts"
+        lines = read_file(path, lambda x: x.read_text(errors="replace")).splitlines() if path.exists() else []
+        words = [line[1:].split(" ", maxsplit=1) for line in lines if line.startswith("-")]
+        return {word[0]: word[1].strip('"') if len(word) > 1 else "" for word in words}
+
+    def energies(self) -> dict[str, np.ndarray]:
+        """Return the energies that the run has at each step (length^4/time^2, in three dimensions length^5/time^2), by name,
+        such as bending.
+
+        Those that are zero at all steps are left out: without gravity or contact, and the kinetic one of unbounded fluid,
+        which is not computed.
+        """
+        columns = {name: self.series.get(f"energy_{name}") for name in ENERGIES}
+        found = {name: values for name, values in columns.items() if values is not None and values.any()}
+        return found or {"kinetic": np.zeros_like(self.series["time"])}
+
+    def frame_at(self, time: float) -> int:
+        """Return the number of the saved time nearest to a time of the run."""
+        low, high = self.time[[0, -1]]
+        slack = 1e-9 * max(abs(low), abs(high))
+        if not low - slack <= time <= high + slack:
+            raise RunError(f"time {time:g}: not in the run; allowed: {low:g} to {high:g}")
+        return int(np.argmin(np.abs(self.time - time)))
+
+    def spread_frames(self, most: int) -> np.ndarray:
+        """Return the numbers of saved times, evenly spread, of all if they are no more than `most`."""
+        count = len(self.time)
+        return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
+
+    def tension_range(self, frames: int | Sequence[int] | np.ndarray) -> tuple[float, float]:
+        """Return the least and the largest tension at the saved times `frames`, one or some; 0 and 1 without a vesicle."""
+        chosen = self.tension[frames]
+        return (float(chosen.min()), float(chosen.max())) if chosen.size else (0.0, 1.0)
 
 
 @dataclass(kw_only=True)
@@ -80,43 +190,34 @@ class Run(RunFolder):
     tracers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     columns = (
         "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall nsolve"
-        " tension_its bending_its coupled_its"
     )
-    read_frames = staticmethod(read_frames)
+    columns += " tension_its bending_its coupled_its"
 
     @functools.cached_property
     def periods(self) -> tuple[float, float]:
         """The box's periods in x and y (length); 0 where it is not periodic."""
         options = self._in_force
-        return tuple(
-            float(self.box[2 * d + 1] - self.box[2 * d]) if options.get(f"domain_bc_{c}") == "periodic" else 0.0
-            for d, c in enumerate("xy")
-        )
+        wrapped = np.array([options.get(f"domain_bc_{c}") == "periodic" for c in "xy"])
+        return tuple(map(float, wrapped * (self.box[1::2] - self.box[::2])))
 
     @property
     def walls(self) -> str:
         """The directions that walls bound: "x", "y", "xy" or ""."""
         return "".join(c for c in "xy" if self._in_force.get(f"domain_bc_{c}", "wall") == "wall")
 
-    def images_of(
-        self, outline: np.ndarray, limits: np.ndarray | None = None, origin: np.ndarray | None = None
-    ) -> list[np.ndarray]:
-        """Return every image of the closed `outline`, shape (n + 1, 2), that reaches into the box.
+    def images_of(self, outline: np.ndarray, limits: np.ndarray | None = None) -> list[np.ndarray]:
+        """Return every image of the closed `outline`, shape (n + 1, 2), that reaches into the box, or into `limits` (4,).
 
         Markers are not wrapped: a vesicle that has left a periodic box goes on outside of it. Here it is in the box, and once
-        more at the other side where it lies across the seam. `limits` (4,) stand in place of the box, `origin` (2,) is taken
-        off all places.
+        more at the other side where it lies across the seam.
         """
-        if origin is not None:
-            outline = outline - origin
         box = self.box if limits is None else limits
         shifts = []
         for d, period in enumerate(self.periods):
             low, high = outline[:, d].min(), outline[:, d].max()
             if period and high - low > WIDEST * period:
-                raise RunError(
-                    f"{self.folder / 'run.h5'}: a curve as wide as {(high - low) / period:.3g} periods of the box"
-                )
+                wide = f"a curve as wide as {(high - low) / period:.3g} periods of the box"
+                raise RunError(f"{self.folder / 'run.h5'}: {wide}")
             ends = [(box[2 * d] - high) / period, (box[2 * d + 1] - low) / period] if period else [-1, 1]
             shifts.append(period * np.arange(np.floor(ends[0]) + 1, np.ceil(ends[1])))
         return [outline + (x, y) for x in shifts[0] for y in shifts[1]]
@@ -177,6 +278,32 @@ class Run(RunFolder):
     def edge_tension(self, frame: int, vesicle: int = 0) -> np.ndarray:
         """Return the tension of one vesicle's edges at a saved time."""
         return self.tension[frame, self.start[vesicle] : self.start[vesicle + 1]]
+
+
+@dataclass(kw_only=True)
+class SurfaceRun(RunFolder):
+    """One run in three dimensions; `Run` says what `folder`, `series`, `nu`, `time`, `bending` and `summary` are.
+
+    Attributes
+    ----------
+    degree : int
+        Degree p of the spherical harmonics.
+    points, velocity : ndarray, shape (T, vesicles, n, 3)
+        Points of each surface (length): p + 1 latitudes of 2p + 2 points, then both poles; the velocity there.
+    tension : ndarray, shape (T, vesicles, n)
+        Tension at the points (length^3/time^2).
+    coefficients : ndarray, shape (T, vesicles, 3, (p + 1)^2)
+        Of the real spherical harmonics of x, y and z (length).
+    triangles : ndarray, shape (m, 3)
+        Triangles of a surface, by the numbers of its points, counter-clockwise from outside.
+    """
+
+    degree: int
+    points: np.ndarray
+    velocity: np.ndarray
+    coefficients: np.ndarray
+    triangles: np.ndarray
+    columns = "step time energy_bending area_error volume_error inclination coupled_its wall"
 
 
 def centroid(outline: np.ndarray) -> np.ndarray:

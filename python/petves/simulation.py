@@ -233,8 +233,6 @@ class Simulation(State):
         self._lib.SimulationGetRow(self._handle, -1, self._row)
         self._rows.append(bytes(self._row))  # cheaper than a tuple
 
-    # -- stepping ------------------------------------------------------------------------------------------------------
-
     def step(self, steps: int = 1) -> None:
         """Take so many time `steps`, with their rows of series.csv and the files that are due.
 

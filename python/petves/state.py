@@ -108,7 +108,7 @@ class State(Measures):
         Of the disturbance unless ``flow_form`` is total. In unbounded fluid it is zero: nothing is solved for on the
         grid, and `cell_pressure` has it.
         """
-        return self._array("pressure").reshape(self._sizes[5:7])
+        return self.vec("pressure").array_r.reshape(self._sizes[5:7])
 
     @property
     def velocity(self) -> tuple[np.ndarray, np.ndarray]:
@@ -120,7 +120,7 @@ class State(Measures):
         background flow unless ``flow_form`` is total; `cell_velocity` has the whole. In unbounded fluid it is zero: nothing
         is solved for on the grid, and `cell_velocity` has the flow.
         """
-        values, (_, rows, columns, *_) = self._array("velocity"), self._sizes
+        values, (_, rows, columns, *_) = self.vec("velocity").array_r, self._sizes
         cut = rows * columns
         return values[:cut].reshape(rows, columns), values[cut:].reshape(self._sizes[3:5])
 
@@ -179,6 +179,3 @@ class State(Measures):
         if not handle:
             raise Error(f"{kind} {asked}: this simulation has none of that name")
         return wrap(kind, handle)
-
-    def _array(self, name: str) -> np.ndarray:
-        return self.vec(name).array_r

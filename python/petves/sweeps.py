@@ -17,7 +17,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from petves.errors import Error, RunError
-from petves.files import read_file, read_summary, writing
+from petves.files import read_file, read_summary, write_text
 from petves.program import command, run_program
 from petves.progress import progress_bar
 
@@ -28,12 +28,13 @@ FORBIDDEN = "output_dir|restart|options_.*|python.*|dll_.*|.*debugger.*|on_error
 SAFE = " !$&'()*+,-.:;<>?@[]^_`{|}~"  # what a folder's name has as it is: no slash, =, # nor %
 LONGEST = 200  # characters of a folder's name
 
+Grid = Mapping[str, Iterable[object]]  # values of each option
 Ended = tuple[str, str]  # status and message of a run
 
 
 def sweep(
     folder: str | Path,
-    grid: Mapping[str, Iterable[object]],
+    grid: Grid,
     options_file: str | Path | None = None,
     jobs: int = 1,
     ranks: int = 1,
@@ -71,7 +72,7 @@ def sweep(
     command()
     shared = folder / "shared.opts"
     if not shared.is_file():
-        _replace(shared, base)
+        write_text(shared, base)
     elif shared.read_text() != base:
         raise Error(f"{folder}: holds a sweep with other shared options, see {shared}; choose another folder")
     ended: dict[str, Ended] = {}
@@ -89,11 +90,7 @@ def sweep(
 
 
 def submit(
-    folder: str | Path,
-    grid: Mapping[str, Iterable[object]],
-    options_file: str | Path | None = None,
-    ranks: int = 1,
-    slurm: str = "",
+    folder: str | Path, grid: Grid, options_file: str | Path | None = None, ranks: int = 1, slurm: str = ""
 ) -> str:
     """Submit a grid as a job array of Slurm, one combination a task; return what sbatch answers.
 
@@ -104,7 +101,7 @@ def submit(
     task = [sys.executable, "-m", "petves", "sweep", str(folder), "--ranks", str(ranks), "--jobs", "1"]
     task += ["--options-file", str(Path(options_file).resolve())] if options_file else []
     varied = ([word for name, value in point.items() for word in ("--vary", name, value)] for point in points)
-    _replace(folder / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
+    write_text(folder / "tasks", "".join(f"{shlex.join([*task, *words])}\n" for words in varied))
     wrapped = f'eval "$(sed -n "$SLURM_ARRAY_TASK_ID p" {shlex.quote(str(folder / "tasks"))})"'
     words = [f"--array=1-{len(points)}", f"--ntasks={ranks}", "--job-name=petves", *shlex.split(slurm)]
     try:
@@ -133,13 +130,7 @@ def _options_of(path: Path) -> str:
     return re.sub(r"^(\s*-\w+_file\s+)([^\s#\"']+)", found, path.read_text(), flags=re.MULTILINE)
 
 
-def _replace(path: Path, text: str) -> None:
-    """Write a file that is whole or as it was."""
-    with writing(path) as fresh:
-        fresh.write_text(text, errors="surrogateescape")
-
-
-def _combinations(grid: Mapping[str, Iterable[object]], jobs: int, ranks: int) -> list[dict[str, str]]:
+def _combinations(grid: Grid, jobs: int, ranks: int) -> list[dict[str, str]]:
     """Return every combination of a grid's values as text, each once."""
     grid = {name: [str(value) for value in values] for name, values in grid.items()}
     if not grid or not all(grid.values()):
@@ -172,7 +163,7 @@ def _run_point(folder: Path, point: dict[str, str], ranks: int) -> Ended:
     try:
         kind, message = _launch(home, words, ranks)
         if kind in REMEMBERED:
-            _replace(home / "status.json", json.dumps({"status": kind, "message": message}) + "\n")
+            write_text(home / "status.json", json.dumps({"status": kind, "message": message}) + "\n")
     except RunError as error:  # of what has ended well the next call finds the end state
         kind, message = "failed", str(error)
     except OSError as error:
@@ -232,5 +223,4 @@ def _write(folder: Path, points: list[dict[str, str]], ended: dict[str, Ended]) 
     writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
-    _replace(folder / "sweep.csv", text.getvalue())
-    return folder / "sweep.csv"
+    return write_text(folder / "sweep.csv", text.getvalue())

@@ -5,7 +5,7 @@ import pytest
 from harness import SITE, run_petves, run_python
 
 import petves
-from petves.surfaces import SurfaceRun
+from petves.run import SurfaceRun
 from petves.views.words import key_numbers, scene_in_words
 
 SCENE = "-dim 3 -flow_type shear -vesicle_bending 0.1 -sphere_degree 8 -time_step 0.2 -time_end 0.4 -output_every 0.2"

@@ -4,10 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.dataset import load
 from petves.files import shown
-from petves.run import Run
-from petves.runfiles import RunFolder
+from petves.run import Run, RunFolder
 from petves.views.plot import draw_outlines, dress, new_figure, save_figure
 
 COUNTERS = ("step", "wall", "nsolve", "tension_its", "bending_its", "coupled_its")
@@ -20,7 +18,7 @@ def compare(first: str | Path, second: str | Path, output: str | Path | None = N
     Parameters
     ----------
     first, second : str or Path
-        The runs' folders.
+        The runs' folders; `RunError` when one cannot be read.
     output : str or Path, optional
         The picture; compare.png in the first folder when left out.
 
@@ -31,13 +29,8 @@ def compare(first: str | Path, second: str | Path, output: str | Path | None = N
         interpolated; largest distance of markers at common saved times.
     picture : Path
         Energy, inclination and last outlines of both.
-
-    Raises
-    ------
-    RunError
-        When a run cannot be read.
     """
-    runs = load(first, "numpy"), load(second, "numpy")
+    runs = Run.read(first), Run.read(second)
     lines = _options(*runs) + _columns(*runs) + [_markers(*runs)]
     return lines, _draw(runs, Path(output) if output else runs[0].folder / "compare.png")
 
@@ -74,7 +67,7 @@ def _markers(a: RunFolder, b: RunFolder) -> str:
     pairs = [(i, j) for i, t in enumerate(a.time) for j in np.flatnonzero(np.isclose(b.time, t, rtol=0, atol=SAME))]
     one, two = (run.markers if isinstance(run, Run) else run.points for run in (a, b))
     if one.shape[1:] != two.shape[1:]:
-        return f"Markers are not compared: {one[0].size} and {two[0].size} of their coordinates."
+        return f"Markers are not compared: {one[0, ..., 0].size} and {two[0, ..., 0].size} of them."
     if not pairs or not a.vesicles:
         return "Markers are not compared: there are no common saved times."
     gaps = [np.linalg.norm(one[i] - two[j], axis=-1).max() for i, j in pairs]

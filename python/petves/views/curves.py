@@ -62,9 +62,8 @@ def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> F
             near = difflib.get_close_matches(name, known, 1)
             meant = f"; {near[0]} is meant?" if near else ""
             shown = ", ".join(key for key in known if not re.search(r"_\d+$", key))
-            raise RunError(
-                f"column {name}: not one of this run{meant}; allowed: {shown}, and of one of several with its number, gap_1"
-            )
+            allowed = f"{shown}, and of one of several with its number, gap_1"
+            raise RunError(f"column {name}: not one of this run{meant}; allowed: {allowed}")
     usual = [name for name in USUAL if name != "gap" or run.vesicles > 1]
     found = {name: columns_of(run, name) for name in columns or usual}
     if not columns:

@@ -39,11 +39,9 @@ class FieldKind:
 FIELDS = {
     "pressure": FieldKind(lambda w: w.fields()[2], "pressure $p$ (length$^2$/time$^2$)", "RdBu_r"),
     "pressure_deviation": FieldKind(
-        lambda w: w.fields()[2] - w.mean_pressure(), "$p$ less mean gradient (length$^2$/time$^2$)", "RdBu_r"
+        Window.pressure_deviation, "$p$ less mean gradient (length$^2$/time$^2$)", "RdBu_r"
     ),
-    "speed": FieldKind(
-        lambda w: np.hypot(*w.fields()[:2]), r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False
-    ),
+    "speed": FieldKind(Window.speed, r"speed $|\mathbf{u}|$ (length/time)", "viridis", "white", False),
     "vorticity": FieldKind(Window.vorticity, r"vorticity $\omega$ (1/time)", "PuOr_r"),
     "stream_function": FieldKind(Window.stream_function, r"stream function $\psi$ (length$^2$/time)", "PRGn"),
 }
@@ -145,9 +143,8 @@ def draw_members(axes: Axes, run: Run, frame: int, follow: int | None = None) ->
     outlines = [(v, points) for v in range(run.vesicles) for points in window.images(v, curve=run.vesicles < CROWD)]
     colors = [f"C{members[v]}" for v, _ in outlines]
     width = 0.8 if run.vesicles < CROWD else 0.4
-    return axes.add_collection(
-        PolyCollection([points for _, points in outlines], facecolors=colors, edgecolors="black", lw=width)
-    )
+    style = dict(facecolors=colors, edgecolors="black", lw=width)
+    return axes.add_collection(PolyCollection([points for _, points in outlines], **style))
 
 
 def box_sheet(window: Window, look: Look, panels: int, bars: bool = True, last: bool = False) -> Sheet:

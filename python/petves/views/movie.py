@@ -9,14 +9,12 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
 
-from petves.dataset import load
 from petves.files import writing
 from petves.progress import progress_bar
-from petves.run import Run, RunError
-from petves.surfaces import SurfaceRun
+from petves.run import Run, RunError, SurfaceRun
 from petves.views.field import TENSION, box_sheet, draw_field, draw_membranes, draw_streamlines, field_kind, reach
 from petves.views.figures import PLAIN, Look, add_bar
-from petves.views.surfaces import draw_surfaces, surface_figure
+from petves.views.surfaces import plot_surfaces
 from petves.views.window import Window
 
 DOTS = 150  # an inch
@@ -39,9 +37,10 @@ def movie(
     Parameters
     ----------
     folder : str or Path
-        The run's ``-output_dir``.
+        The run's ``-output_dir``; `RunError` when it cannot be read.
     output : str or Path, optional
-        File to write, .mp4 (needs ffmpeg) or .gif; movie.mp4 in the folder, or movie.gif without ffmpeg.
+        File to write, .mp4 (needs ffmpeg) or .gif; movie.mp4 in the folder, or movie.gif without ffmpeg. `RunError` when it
+        cannot be written.
     field : str
         What is under the membrane: speed, pressure, pressure_deviation, vorticity or stream_function.
     rate : float
@@ -56,13 +55,8 @@ def movie(
         Draw streamlines too; a film then takes several times as long.
     look : Look
         Colour map, and whether the picture goes along with a vesicle; a film has its own format and size.
-
-    Raises
-    ------
-    RunError
-        When the run cannot be read, or the file not be written this way.
     """
-    run = load(folder, "numpy")
+    run = Run.read(folder)
     ffmpeg = shutil.which("ffmpeg") is not None
     path = Path(output) if output else run.folder / ("movie.mp4" if ffmpeg else "movie.gif")
     if path.suffix not in (".mp4", ".gif"):
@@ -71,8 +65,8 @@ def movie(
         raise RunError(f"{path}: ffmpeg is not installed; install it, or ask for a .gif")
     frames, look = chosen_frames(run, every, begin, end), replace(look, width=width / DOTS)
     if isinstance(run, SurfaceRun):
-        figure, limits = surface_figure(look), run.tension_range(frames)
-        draw = lambda frame: draw_surfaces(figure, run, frame, limits, look)
+        figure = plot_surfaces(run, look, frames[0])
+        draw = lambda frame: plot_surfaces(run, look, frame, frames, figure)
     else:
         figure, draw = _plane(run, frames, field, streamlines, look)
     # films have even numbers of pixels
@@ -98,9 +92,8 @@ def chosen_frames(run: Run | SurfaceRun, every: int, begin: float | None, end: f
     low, high = (run.time[0] if begin is None else begin), (run.time[-1] if end is None else end)
     frames = np.flatnonzero((run.time >= low - slack) & (run.time <= high + slack))[::every]
     if not len(frames):
-        raise RunError(
-            f"from {low:g} to {high:g}: no saved time; allowed: times in {run.time[0]:g} to {run.time[-1]:g}"
-        )
+        allowed = f"times in {run.time[0]:g} to {run.time[-1]:g}"
+        raise RunError(f"from {low:g} to {high:g}: no saved time; allowed: {allowed}")
     return frames
 
 

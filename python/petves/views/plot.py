@@ -10,11 +10,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
-from petves.dataset import load
 from petves.measures import ENERGIES
-from petves.run import Run, RunError
-from petves.runfiles import RunFolder
-from petves.surfaces import SurfaceRun
+from petves.run import Run, RunError, RunFolder, SurfaceRun
 from petves.views.curves import plot_columns, plot_line, plot_points, plot_walls
 from petves.views.field import OVER_STREAMS, TENSION, box_sheet, draw_members, draw_solids, kinds_of, plot_field
 from petves.views.figures import LEGEND, MANY, PLAIN, TICK, Look
@@ -22,6 +19,7 @@ from petves.views.figures import dress, legend_above, new_figure, new_sheet, sav
 from petves.views.surfaces import plot_course, plot_surfaces
 from petves.views.window import Window
 
+IN_CROWD = dict(ms=0, lw=0.5, color="black", alpha=0.3)  # of a curve among many
 OUTLINES = 7  # outlines in the picture of shapes
 LEAST_SPAN = 0.02  # of an axis of angles over pi
 FLOOR = 1e-16  # smallest value on a logarithmic axis
@@ -44,7 +42,7 @@ def plot_run(
     Parameters
     ----------
     folder : str or Path
-        The run's ``-output_dir``; the pictures go there too.
+        The run's ``-output_dir``; the pictures go there too. `RunError` when it cannot be read, or not be drawn this way.
     look : Look
         Format, size, colours, and whether fields and outlines go along with a vesicle.
     time : float, optional
@@ -67,23 +65,15 @@ def plot_run(
         has a gap, a pressure drop, torques or a viscosity. Asked for: series, field, points, line, walls; with `time`
         pictures of one time have what was asked for in their names, as in field_t1.5.png. Of a run in three dimensions
         surfaces and course, or surfaces at that time.
-
-    Raises
-    ------
-    RunError
-        When the run cannot be read, or not be drawn this way.
     """
-    run = load(folder, "numpy")
+    run = Run.read(folder)
     frame, at = (-1, "") if time is None else (run.frame_at(time), f"_t{time:g}")
     figures: dict[str, Figure | None] = {}
     if isinstance(run, SurfaceRun):
         if columns or fields or len(points) or line is not None or walls:
-            raise RunError(
-                f"{folder}: a run in three dimensions, which has pictures of its surfaces alone; allowed: --time"
-            )
-        figures = {f"surfaces{at}": plot_surfaces(run, look, frame)} | (
-            {} if at else {"course": plot_course(run, look)}
-        )
+            raise RunError(f"{folder}: a run in three dimensions has pictures of its surfaces alone; allowed: --time")
+        figures[f"surfaces{at}"] = plot_surfaces(run, look, frame)
+        figures |= {} if at else {"course": plot_course(run, look)}
         return _saved(run, figures, look)
     if columns:
         figures["series"] = plot_columns(run, columns, look)
@@ -133,13 +123,11 @@ def plot_conservation(run: RunFolder, look: Look = PLAIN) -> Figure:
     """Draw the relative errors of area, volume, and length where no membrane stretches, against time, logarithmically."""
     figure, (axes,) = new_figure(6, 4, look=look)
     time = run.series["time"][1:]
-    kept = [name for name in ("area", "length", "volume") if f"{name}_error" in run.series]
-    if "energy_stretching" in run.series:
-        kept.remove("length")
-    for name, style in zip(kept, ("-", "--")):
-        column, letter = f"{name}_error", name[0].upper()
+    kept = ("area", "volume") if "energy_stretching" in run.series else ("area", "length", "volume")
+    for name, style in zip([name for name in kept if f"{name}_error" in run.series], ("-", "--")):
+        values, letter = run.series[f"{name}_error"][1:], name[0].upper()
         label = f"{name}, $|{letter} - {letter}_0|/{letter}_0$"
-        axes.semilogy(time, np.maximum(np.abs(run.series[column][1:]), FLOOR), style, label=label)
+        axes.semilogy(time, np.maximum(np.abs(values), FLOOR), style, label=label)
     dress(axes, xlabel="time $t$", ylabel="relative error")
     legend_above(axes)
     return figure
@@ -155,45 +143,40 @@ def is_steady(time: np.ndarray, values: np.ndarray, scale: float | None = None) 
 
 def _is_at_rest(run: Run, vesicle: int) -> bool:
     """Return whether a vesicle's inclination, turning rate and velocity are steady together."""
-    time, fastest = run.series["time"], np.abs(run.velocity[-1]).max()
-    own = {name: run.each(name)[:, vesicle] for name in ("inclination", "frequency", "velocity_x", "velocity_y")}
-    turning = np.isfinite(own["frequency"][-1])
-    return all(is_steady(time, own[f"velocity_{c}"], fastest) for c in "xy") and all(
-        is_steady(time, own[name]) for name in ("inclination", "frequency")[: 1 + turning]
-    )
+    fastest = np.abs(run.velocity[-1]).max()
+    scales = {"inclination": None, "frequency": None, "velocity_x": fastest, "velocity_y": fastest}
+    own = {name: run.each(name)[:, vesicle] for name in scales}
+    if not np.isfinite(own["frequency"][-1]):
+        del own["frequency"]
+    return all(is_steady(run.series["time"], values, scales[name]) for name, values in own.items())
 
 
-def _draw_course(
-    axes: Axes, time: np.ndarray, values: np.ndarray, color: str, label: str | None, at_rest: bool
-) -> None:
-    """Draw a quantity against time, at rest with its last value as a dotted line and a number."""
-    axes.plot(time, values, "-" if color == "C0" else "--", color=color, label=label)  # one may hide another
-    if at_rest and np.isfinite(values[-1]):
-        steady = values[-1]
-        axes.axhline(steady, color=color, ls=":", lw=1)
-        place = dict(xytext=(4, 0), textcoords="offset points", va="center", fontsize=9, annotation_clip=False)
-        axes.annotate(f"{steady:.4g}", (1.0, steady), xycoords=("axes fraction", "data"), color=color, **place)
+def _mark(axes: Axes, steady: float, color: str) -> None:
+    """Draw a steady value as a dotted line with its number."""
+    axes.axhline(steady, color=color, ls=":", lw=1)
+    place = dict(xytext=(4, 0), textcoords="offset points", va="center", fontsize=9, annotation_clip=False)
+    axes.annotate(f"{steady:.4g}", (1.0, steady), xycoords=("axes fraction", "data"), color=color, **place)
 
 
 def plot_motion(run: Run, look: Look = PLAIN) -> Figure:
     """Draw the inclination, without jumps by pi, and the tank-treading frequency against time; steady values are marked."""
     if run.vesicles > MANY:
         return _plot_motion_of_many(run, look)
-    time = run.series["time"]
     angles = np.unwrap(run.each("inclination"), period=np.pi, axis=0) / np.pi
     angles -= np.round(angles[-1] - run.each("inclination")[-1] / np.pi)  # the last one is that of series.csv
-    frequencies = run.each("frequency")
-    turning = bool(np.isfinite(frequencies).any())
-    figure, axes = new_figure(6, 4, rows=2 if turning else 1, look=look)
+    courses = [angles, run.each("frequency")]
+    courses = courses if np.isfinite(courses[1]).any() else courses[:1]
+    figure, axes = new_figure(6, 4, rows=len(courses), look=look)
     for vesicle in range(run.vesicles):
-        label = f"vesicle {vesicle + 1}" if run.vesicles > 1 else None
+        style = dict(color=f"C{vesicle}", ls="--" if vesicle else "-")  # one may hide another
         at_rest = _is_at_rest(run, vesicle)
-        _draw_course(axes[0], time, angles[:, vesicle], f"C{vesicle}", label, at_rest)
-        if turning:
-            _draw_course(axes[1], time, frequencies[:, vesicle], f"C{vesicle}", None, at_rest)
+        for panel, values in zip(axes, courses):
+            panel.plot(run.series["time"], values[:, vesicle], label=f"vesicle {vesicle + 1}", **style)
+            if at_rest and np.isfinite(values[-1, vesicle]):
+                _mark(panel, values[-1, vesicle], style["color"])
     middle, half = np.mean(axes[0].get_ylim()), max(np.ptp(axes[0].get_ylim()) / 2, LEAST_SPAN / 2)
     dress(axes[0], ylabel=r"inclination $\theta/\pi$", ylim=(middle - half, middle + half))
-    if turning:
+    if len(courses) > 1:
         dress(axes[1], ylabel="frequency\n(radians/time)", xlim=axes[0].get_xlim())
     axes[-1].set_xlabel("time $t$")
     if run.vesicles > 1:
@@ -221,9 +204,7 @@ def plot_tension(run: Run, look: Look = PLAIN, frame: int = -1) -> Figure:
     for vesicle in range(run.vesicles):
         angle, own = run.phase_angle(frame, vesicle) / np.pi, slice(*run.start[vesicle : vesicle + 2])
         order = np.argsort(angle)
-        style = (
-            dict(ms=4, lw=1, label=f"vesicle {vesicle + 1}") if few else dict(ms=0, lw=0.5, color="black", alpha=0.3)
-        )
+        style = dict(ms=4, lw=1, label=f"vesicle {vesicle + 1}") if few else IN_CROWD
         for axes, (values, _) in zip(panels, shown):
             axes.plot(angle[order], values[own][order], ".-", **style)
     for axes, (_, label) in zip(panels, shown):
@@ -258,7 +239,7 @@ def plot_shapes(run: Run, look: Look = PLAIN) -> Figure:
     low, high = run.markers.min(axis=(0, 1)), run.markers.max(axis=(0, 1))
     left = np.any(((low < run.box[::2]) | (high > run.box[1::2])) & (np.array(run.periods) > 0))
     whole = look.follow is None and (bool(run.obstacles) or left)
-    frames = np.unique(np.linspace(0, len(run.time) - 1, min(OUTLINES, len(run.time))).round().astype(int))
+    frames = run.spread_frames(OUTLINES)
     colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(frames)))
     limits = run.box
     if not whole:
@@ -294,8 +275,7 @@ def _plot_first_and_last(run: Run, look: Look) -> Figure:
         draw_members(panel, run, frame, look.follow)
         window = Window(run, frame, look.follow)
         draw_solids(panel, window)
-        panel.set(
-            xlim=window.limits[:2], ylim=window.limits[2:], aspect="equal", xlabel="$x$ (length)", ylabel="$y$ (length)"
-        )
+        panel.set(xlim=window.limits[:2], ylim=window.limits[2:], aspect="equal")
+        panel.set(xlabel="$x$ (length)", ylabel="$y$ (length)")
         panel.set_title(f"$t$ = {run.time[frame]:.4g}", fontsize=10)
     return sheet.figure

@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from petves.dataset import load
-from petves.files import read_file, shown, writing
-from petves.run import Run
-from petves.runfiles import RunFolder
+from petves.files import read_file, shown, write_text
+from petves.run import Run, RunFolder
 from petves.views.field import reach
 from petves.views.figures import MANY, PLAIN, filled
 from petves.views.plot import plot_conservation, plot_energy, plot_motion, plot_shapes, plot_tension
@@ -22,6 +20,7 @@ from petves.views.window import Window
 from petves.views.words import key_numbers, scene_in_words
 
 FRAMES = 81  # saved times kept at most
+COLOURS = ("viridis", "RdBu_r", "plasma")  # of speed, pressure and tension
 PIXELS = 96  # of a field's longer side
 CAPTIONS = {
     plot_energy: "Energy.",
@@ -43,16 +42,11 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
     Parameters
     ----------
     folder : str or Path
-        The run's ``-output_dir``.
+        The run's ``-output_dir``; `RunError` when it cannot be read.
     output : str or Path, optional
         File to write; report.html in the folder when left out. It needs no other file and no network.
-
-    Raises
-    ------
-    RunError
-        When the run cannot be read.
     """
-    run = load(folder, "numpy")
+    run = Run.read(folder)
     told = read_file(run.folder / "resolved.opts", lambda _: (key_numbers(run), scene_in_words(run)))
     rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in told[0])
     words = "".join(f"<p>{escape(text)}</p>" for text in told[1])
@@ -68,10 +62,7 @@ def report(folder: str | Path, output: str | Path | None = None) -> Path:
         "OPTIONS": escape("\n".join(f"-{name} {value}".rstrip() for name, value in run.options().items())),
         "DATA": json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
     }
-    path = Path(output) if output else run.folder / "report.html"
-    with writing(path) as fresh:
-        fresh.write_text(filled("report.html", parts), encoding="utf-8")
-    return path
+    return write_text(Path(output) if output else run.folder / "report.html", filled("report.html", parts))
 
 
 def _plots(run: RunFolder) -> str:
@@ -90,12 +81,11 @@ def _plots(run: RunFolder) -> str:
 
 def _data(run: Run) -> dict[str, Any]:
     """Return what the page draws: outlines, tension and fields of at most FRAMES saved times."""
-    frames = np.unique(np.linspace(0, len(run.time) - 1, min(FRAMES, len(run.time))).round().astype(int))
+    frames = run.spread_frames(FRAMES)
     digits = 5 - int(np.floor(np.log10(run.box[1] - run.box[0])))
     raw = [Window(run, frame).fields() for frame in frames]
-    speed = np.stack([coarsen(np.hypot(u, v)) for u, v, _ in raw])
-    pressure = np.stack([coarsen(p) for _, _, p in raw])
-    tension = run.tension[frames]
+    speed = _field([np.hypot(u, v) for u, v, _ in raw], False, "viridis", "speed (length/time)")
+    pressure = _field([p for _, _, p in raw], True, "RdBu_r", "pressure (length²/time²)")
 
     def solids(frame: int) -> list[Any]:
         return [np.round(points, digits).tolist() for points in Window(run, frame).solids()]
@@ -109,15 +99,10 @@ def _data(run: Run) -> dict[str, Any]:
         "periods": [float(period) for period in run.periods],
         "shift": 0.0 if run.options().get("membrane_derivative") == "spectral" else 0.5,
         "markers": np.round(run.markers[frames], digits).tolist(),
-        "tension": [[float(f"{x:.4g}") for x in row] for row in tension],
+        "tension": [[float(f"{x:.4g}") for x in row] for row in run.tension[frames]],
         "tension_limits": run.tension_range(frames),
-        "fields": {
-            "speed": _field(speed, False, "viridis", "speed (length/time)"),
-            "pressure": _field(pressure, True, "RdBu_r", "pressure (length²/time²)"),
-        },
-        "colours": {
-            name: _bytes(255 * colormaps[name](np.arange(256))[:, :3]) for name in ("viridis", "RdBu_r", "plasma")
-        },
+        "fields": {"speed": speed, "pressure": pressure},
+        "colours": {name: _bytes(255 * colormaps[name](np.arange(256))[:, :3]) for name in COLOURS},
     }
 
 
@@ -134,8 +119,9 @@ def _bytes(values: np.ndarray) -> str:
     return base64.b64encode(np.clip(np.round(values), 0, 255).astype(np.uint8).tobytes()).decode()
 
 
-def _field(values: np.ndarray, signed: bool, colours: str, label: str) -> dict[str, Any]:
+def _field(frames: list[np.ndarray], signed: bool, colours: str, label: str) -> dict[str, Any]:
     """Return a field of all frames in eight bits, each frame over its `reach`, from minus to plus if `signed`."""
+    values = np.stack([coarsen(frame) for frame in frames])
     high = np.array([reach(frame) for frame in values])
     low = -high if signed else 0 * high
     share = (values - low[:, None, None]) / (high - low)[:, None, None]

@@ -7,7 +7,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from petves.surfaces import SurfaceRun
+from petves.run import SurfaceRun
 from petves.views.curves import draw_curves
 from petves.views.field import TENSION
 from petves.views.figures import PLAIN, Look, blank_figure
@@ -18,43 +18,38 @@ LIGHT = np.array([0.3, -0.5, 0.8])  # where it comes from
 SHADE = 0.55  # of a surface that looks away from the light
 
 
-def plot_surfaces(run: SurfaceRun, look: Look = PLAIN, frame: int = -1) -> Figure:
-    """Draw the surfaces at a saved time."""
-    figure = surface_figure(look)
-    draw_surfaces(figure, run, frame, run.tension_range(frame), look)
-    return figure
+def plot_surfaces(
+    run: SurfaceRun, look: Look = PLAIN, frame: int = -1, over: np.ndarray | None = None, figure: Figure | None = None
+) -> Figure:
+    """Draw the surfaces at a saved time, coloured by tension: one view from the side and three along the axes.
 
-
-def surface_figure(look: Look) -> Figure:
-    """Return a figure with the proportions of the four views and their colour bar."""
+    Colours span the tensions of the saved times `over`, or of that time. A figure that is given is cleared and drawn on.
+    """
     width = look.width or 7
-    return blank_figure(width, width * 0.86)
-
-
-def draw_surfaces(figure: Figure, run: SurfaceRun, frame: int, limits: tuple[float, float], look: Look) -> None:
-    """Draw one view from the side and three along the axes, coloured by tension, in place of what the figure has."""
+    figure = figure or blank_figure(width, 0.86 * width)
     figure.clear()
+    limits = run.tension_range(frame if over is None else over)
     colours = ScalarMappable(Normalize(*limits), matplotlib.colormaps[look.cmap or "viridis"])
-    corners = run.points[frame][:, run.triangles]  # vesicle, triangle, corner, xyz
-    faces = corners.reshape(-1, 3, 3)
+    faces = run.points[frame][:, run.triangles].reshape(-1, 3, 3)  # triangle, corner, xyz
     normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     bright = SHADE + (1 - SHADE) * (1 + normals @ (LIGHT / np.linalg.norm(LIGHT))) / 2
     rgba = colours.to_rgba(run.tension[frame][:, run.triangles].mean(axis=-1).ravel())
     rgba[:, :3] *= bright[:, None]
-    middle = (faces.reshape(-1, 3).max(axis=0) + faces.reshape(-1, 3).min(axis=0)) / 2
-    reach = 0.52 * np.ptp(faces.reshape(-1, 3), axis=0).max()
+    low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
+    middle, reach = (high + low) / 2, 0.52 * (high - low).max()
+    sides = {f"{c}lim": (middle[d] - reach, middle[d] + reach) for d, c in enumerate("xyz")}
     for k, (name, (elevation, azimuth)) in enumerate({"": (24, -56), **SIDES}.items()):
         axes = figure.add_axes((0.5 * (k % 2), 0.54 - 0.43 * (k // 2), 0.5, 0.43), projection="3d", proj_type="ortho")
         axes.add_collection3d(Poly3DCollection(faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2))
-        axes.set(xlim=middle[0] + reach * np.array([-1, 1]), ylim=middle[1] + reach * np.array([-1, 1]))
-        axes.set(zlim=middle[2] + reach * np.array([-1, 1]))
+        axes.set(**sides)
         axes.set_box_aspect((1, 1, 1), zoom=1.5)
         axes.view_init(elevation, azimuth)
         axes.set_axis_off()
         axes.set_title(name or f"$t$ = {run.time[frame]:.4g}", fontsize=9, y=0.96)
     bar = figure.add_axes((0.25, 0.085, 0.5, 0.02))
     figure.colorbar(colours, cax=bar, orientation="horizontal", label=TENSION)
+    return figure
 
 
 def plot_course(run: SurfaceRun, look: Look = PLAIN) -> Figure:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from petves.errors import Error
-from petves.files import shown, writing
+from petves.files import shown, write_text
 from petves.run import RunError
 from petves.views.figures import PLAIN, Look, dress, filled, new_figure
 from petves.views.plot import plot_run
@@ -30,16 +30,11 @@ def watch(folder: str | Path, every: float = 10, look: Look = PLAIN) -> Path:
     Parameters
     ----------
     folder : str or Path
-        The run's ``-output_dir``. The pictures are those of `petves.plot`.
+        The run's ``-output_dir``, `RunError` when there is none. The pictures are those of `petves.plot`.
     every : float
         Seconds between two drawings.
     look : Look
         How the pictures look.
-
-    Raises
-    ------
-    RunError
-        When there is no such folder.
     """
     page = Path(folder) / "watch.html"
     if not page.parent.is_dir():
@@ -73,9 +68,7 @@ def _draw(page: Path, every: float | None, look: Look) -> Path:
         "TOLD": html.escape(told),
         "PICTURES": "\n".join(f'<img src="{x.name}?{x.stat().st_mtime_ns}" alt="{x.stem}">' for x in pictures),
     }
-    with writing(page) as fresh:
-        fresh.write_text(filled("watch.html", parts), encoding="utf-8")
-    return page
+    return write_text(page, filled("watch.html", parts))
 
 
 class Live:

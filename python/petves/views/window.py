@@ -61,6 +61,14 @@ class Window:
         """Return what the mean gradient adds to the pressure, shape (nx,)."""
         return self.run.pressure_gradient[self.frame] * (self.cell_centers()[0] - np.mean(self.limits[:2]))
 
+    def pressure_deviation(self) -> np.ndarray:
+        """Return the pressure without its mean gradient on the cells of `extent`, shape (ny, nx)."""
+        return self._seen(self.run.fields(self.frame)[2])
+
+    def speed(self) -> np.ndarray:
+        """Return the speed on the cells of `extent`, shape (ny, nx)."""
+        return np.hypot(*self.fields()[:2])
+
     def vorticity(self) -> np.ndarray:
         """Return the vorticity on the cells of `extent`, shape (ny, nx)."""
         u, v, _ = self.run.fields(self.frame)
@@ -81,7 +89,7 @@ class Window:
         Obstacles with their images that are seen; where one has fluid within, a frame around the window runs the other way.
         """
         curves = [self.run.obstacle_curve(k, self.frame) for k in range(len(self.run.obstacles))]
-        seen = [image for curve in curves for image in self.run.images_of(curve, self.limits, self.origin)]
+        seen = [image for curve in curves for image in self.run.images_of(curve - self.origin, self.limits)]
         if all(np.sum(x[:-1] * np.diff(y) - y[:-1] * np.diff(x)) > 0 for x, y in ((c - c[0]).T for c in curves)):
             return seen
         x0, x1, y0, y1 = self.limits + np.tile([-1.0, 1.0], 2) * np.ptp(self.limits)
@@ -95,4 +103,4 @@ class Window:
     def images(self, vesicle: int, curve: bool = True) -> list[np.ndarray]:
         """Return a vesicle's outlines that are seen, smooth or through its markers, each of shape (n + 1, 2)."""
         outline = (self.run.curve if curve else self.run.outline)(self.frame, vesicle)
-        return self.run.images_of(outline, self.limits, self.origin)
+        return self.run.images_of(outline - self.origin, self.limits)

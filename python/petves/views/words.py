@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from petves.run import Run
-from petves.runfiles import RunFolder
-from petves.surfaces import SurfaceRun
+from petves.run import Run, RunFolder, SurfaceRun
 from petves.views.curves import columns_of
 from petves.views.figures import MANY
 
@@ -112,11 +110,9 @@ def _method(run: RunFolder, o: dict[str, str]) -> str:
     adaptive = ", adapted to an error estimate" if o.get("time_adapt") == "error" else ""
     reason = run.summary.get("reason", "")
     ends = {"": "It has not ended yet", "finished": "It ended as asked", "steady": "It ended at the steady state"}
-    return (
-        f"Scheme {o['scheme_type']} of order {o['scheme_order']}{kernel}, time step {o['time_step']}{adaptive}. "
-        f"{ends.get(reason, f'It was stopped: {reason}')}, at t = {run.series['time'][-1]:g} after "
-        f"{int(run.series['step'][-1])} steps."
-    )
+    scheme = f"Scheme {o['scheme_type']} of order {o['scheme_order']}{kernel}, time step {o['time_step']}{adaptive}"
+    end = f"at t = {run.series['time'][-1]:g} after {int(run.series['step'][-1])} steps"
+    return f"{scheme}. {ends.get(reason, f'It was stopped: {reason}')}, {end}."
 
 
 def key_numbers(run: RunFolder) -> list[tuple[str, str]]:
@@ -167,14 +163,11 @@ def _motions(run: RunFolder) -> list[tuple[str, str]]:
     """Return how vesicles lie at the end: of several the mean axis and how well they agree with it; and how they turn."""
     turned = np.mean(np.exp(2j * run.each("inclination")[-1]))
     angle, one = np.angle(turned) / 2, run.vesicles == 1
-    name, rate = (
-        ("rotation about z", "rotation_z") if "rotation_z" in run.series else ("tank-treading frequency", "frequency")
-    )
-    return [
-        (f"last {'inclination' if one else 'mean axis'}", f"{angle:.4f} rad = {np.degrees(angle):.2f}°"),
-        ("last order |<exp(2 i inclination)>|", "" if one else f"{abs(turned):.3f}"),
-        (f"last {name}", _span(run.each(rate)[-1])),
-    ]
+    rows = [(f"last {'inclination' if one else 'mean axis'}", f"{angle:.4f} rad = {np.degrees(angle):.2f}°")]
+    rows.append(("last order |<exp(2 i inclination)>|", "" if one else f"{abs(turned):.3f}"))
+    if isinstance(run, SurfaceRun):
+        return [*rows, ("last rotation about z", _span(run.each("rotation_z")[-1]))]
+    return [*rows, ("last tank-treading frequency", _span(run.each("frequency")[-1]))]
 
 
 def _forces(run: RunFolder) -> list[tuple[str, str]]:
