@@ -15,6 +15,8 @@ import h5py
 import numpy as np
 import pytest
 
+from petves.program import OPEN_MPI
+
 ROOT = Path(__file__).resolve().parents[2]
 PETVES = os.environ.get("PETVES", str(ROOT / "bin" / "petves"))
 PROGRAMS = Path(os.environ.get("PETVES_TESTS", str(ROOT / "build" / "tests")))
@@ -24,20 +26,13 @@ SANITIZE = bool(os.environ.get("SANITIZE"))
 #: Exact and published numbers.
 REFERENCES = json.loads((ROOT / "tests" / "support" / "references.json").read_text())
 
-#: What Open MPI needs as root and on few cores, and what the sanitizers need: MPI and PETSc leak by themselves.
-ENVIRONMENT = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+#: What the package gives Open MPI; what tests need of it besides, and of the sanitizers: MPI and PETSc leak by themselves.
+ENVIRONMENT = OPEN_MPI | {
     "OMPI_MCA_odls_base_sigkill_timeout": "0",  # else mpirun sleeps two seconds after a non-zero exit
-    "OMPI_MCA_ess_singleton_isolated": "1",  # one rank without mpirun starts no daemon
     "OMPI_MCA_hwloc_base_binding_policy": "none",  # or runs side by side would all be bound to the first cores
     "OMPI_MCA_pml": "ob1",  # shared memory: looking for other networks takes longer than most runs
     "OMPI_MCA_btl": "^openib,ofi,uct,usnic",
     "OMPI_MCA_osc": "^ucx",
-    "OMP_NUM_THREADS": "1",
     "ASAN_OPTIONS": "detect_leaks=0",
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
 }
