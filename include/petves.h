@@ -14,8 +14,9 @@
 
 typedef struct _p_Simulation *Simulation;
 
-/* A background flow of the caller's: u_inf at n points X[2n] (x0,y0,x1,y1,...) and a time, into u[2n]; non-zero return
-   stops the run. Every rank calls it, for other points and other numbers of times. */
+/* A background flow of the caller's: u_inf at n points X[2n] (x0,y0,x1,y1,...) and a time, into u[2n]; with -dim 3
+   X[3n] (x0,y0,z0,x1,...), u[3n]; non-zero return stops the run. Every rank calls it, for other points and other
+   numbers of times. */
 typedef PetscErrorCode (*PetvesFlow)(PetscReal time, PetscInt n, const PetscReal X[], PetscReal u[], void *ctx);
 
 /* PetvesMain - the whole program petves, from its words to its exit status (0 finished or stopped, 1 bad input, 2 a

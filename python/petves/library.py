@@ -32,7 +32,7 @@ MAX_PATH = 4096  # PETSC_MAX_PATH_LEN
 
 PETSC_ERR_USER = 83
 PETSC_ERR_USER_INPUT = 95
-FlowFunction = Callable[[np.ndarray, np.ndarray, float], "tuple[Any, Any]"]
+FlowFunction = Callable[..., "tuple[Any, ...]"]  # of the coordinates and the time
 
 one_thread = threading.RLock()  # held while C runs: PETSc serves one thread at a time
 
@@ -78,6 +78,7 @@ SIGNATURES = {
     "PetscOptionsCreate": (_pointer(Handle),),
     "PetscOptionsDestroy": (_pointer(Handle),),
     "PetscOptionsSetValue": (Handle, _text, _text),
+    "PetscOptionsGetInt": (Handle, _text, _text, _pointer(Int), _pointer(ctypes.c_int)),
     "PetscOptionsHasName": (Handle, _text, _text, _pointer(ctypes.c_int)),
 }
 
@@ -121,14 +122,15 @@ def communicator(comm: PETSc.Comm) -> int:
     return ctypes.c_void_p.from_address(_petsc4py("PyPetscComm_GetPtr", ctypes.c_void_p, ctypes.py_object)(comm)).value
 
 
-def flow_function(flow: FlowFunction, failed: list[BaseException]) -> Flow:
-    """Return a Python flow as C calls it; an exception is kept for the caller of the step."""
+def flow_function(flow: FlowFunction, dim: int, failed: list[BaseException]) -> Flow:
+    """Return a Python flow of points of `dim` coordinates as C calls it; an exception is kept for the caller of the step."""
 
     def call(time: float, n: int, positions: Any, velocities: Any, _context: Any) -> int:
         try:
-            points = np.ctypeslib.as_array(positions, (n, 2))
-            out = np.ctypeslib.as_array(velocities, (n, 2))
-            out[:, 0], out[:, 1] = flow(points[:, 0].copy(), points[:, 1].copy(), time)
+            points = np.ctypeslib.as_array(positions, (n, dim))
+            out = np.ctypeslib.as_array(velocities, (n, dim))
+            for d, component in enumerate(flow(*points.T.copy(), time)):
+                out[:, d] = component
         except BaseException as error:
             failed.append(error)
             return PETSC_ERR_USER

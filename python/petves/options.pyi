@@ -23,6 +23,7 @@ class Options(TypedDict, total=False):
     flow_velocity: Value  # uniform: u_x,u_y (length/time)
     flow_u: Value  # formula: u_x as a formula of x, y and t, in quotes, such as "sin(pi*y)*cos(2*t)"; a blank goes before a minus sign at its beginning (length/time)
     flow_v: Value  # formula: u_y (length/time)
+    flow_w: Value  # formula in three dimensions: u_z, and all three formulas may have z (length/time)
     flow_half_width: Value  # L_y of poiseuille: half the channel's height (length); between walls in y: half their distance
     flow_center_x: Value  # x_c of the background flow (length)
     flow_center_y: Value  # y_c of the background flow (length); poiseuille between walls in y: their middle

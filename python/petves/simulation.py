@@ -49,7 +49,8 @@ class Simulation(State):
     comm : petsc4py.PETSc.Comm, optional
         The ranks that work on it, default ``PETSc.COMM_WORLD``.
     flow : callable, optional
-        Background flow ``flow(x, y, t) -> (u, v)`` of arrays x, y, shape (n,), and a time. It stands in place of
+        Background flow ``flow(x, y, t) -> (u, v)`` of arrays x, y, shape (n,), and a time; with ``dim=3`` ``flow(x, y,
+        z, t) -> (u, v, w)``. It stands in place of
         ``flow_type`` and is called on every rank, for other points and other numbers of times, so it must not
         communicate; nor may it use the simulation. A part of it that is no Stokes flow for this viscosity (du/dt -
         nu Lap u + grad p not zero for any p) acts as if a body force held it; its divergence must be zero.
@@ -92,13 +93,16 @@ class Simulation(State):
         self._gathered: dict[str, np.ndarray] = {}
         self._comm = comm or PETSc.COMM_WORLD
         self._communicator = communicator(self._comm)
-        self._flow = Flow(0) if flow is None else flow_function(flow, self._failed)
+        dim, given = Int(2), ctypes.c_int()
         if flow is not None:
             options["flow_type"] = "custom"
         with one_thread:
             try:
                 self._lib.PetscOptionsCreate(ctypes.byref(self._options))
                 self._set_options(options_file, options)
+                self._lib.PetscOptionsGetInt(self._options, None, b"-dim", ctypes.byref(dim), ctypes.byref(given))
+                self._dim = dim.value
+                self._flow = Flow(0) if flow is None else flow_function(flow, self._dim, self._failed)
                 self._call("SimulationCreateWithFlow", self._communicator, self._flow, None, ctypes.byref(self._handle))
                 self._learn()
                 self._call("SimulationBegin", self._handle)
@@ -225,7 +229,7 @@ class Simulation(State):
         if places != self._places:  # they stay where they are: making arrays of them each time is dear
             self._places = places
             count = int(self._start[-1])
-            for name, place, each in zip(("markers", "marker_velocity", "tension"), found, (2, 2, 1)):
+            for name, place, each in zip(("markers", "marker_velocity", "tension"), found, (self._dim, self._dim, 1)):
                 pointer = ctypes.cast(place, ctypes.POINTER(ctypes.c_double))
                 array = np.ctypeslib.as_array(pointer, (each * count,)) if count else np.empty(0)
                 array.flags.writeable = False

@@ -16,6 +16,7 @@ DM_NAMES = {"velocity": "dm_velocity", "u": "dm_u", "v": "dm_v", "pressure": "dm
 class State(Measures):
     """What a simulation holds after the last step: options in force, arrays, PETSc objects and measures."""
 
+    _dim: int
     _start: np.ndarray
     _sizes: list[int]
     _in_force: dict[str, str]
@@ -28,10 +29,15 @@ class State(Measures):
         o, count = self._in_force, self.vesicles
         said = {"quiescent": "fluid at rest", "custom": "a flow of the caller's", "formula": "a flow by formulas"}
         flow = said.get(o["flow_type"], o["flow_type"])
-        cells, sides = o["domain_cells"].replace(",", " x "), f"{o['domain_bc_x']} in x, {o['domain_bc_y']} in y"
+        cells, sides = (
+            f"{o['domain_cells']} cells".replace(",", " x "),
+            f"{o['domain_bc_x']} in x, {o['domain_bc_y']} in y",
+        )
+        if self._dim == 3:
+            cells, sides = "three dimensions", f"degree {o['sphere_degree']}"
         vesicles = f"{count or 'no'} vesicle{'s' * (count != 1)}"
         time = "closed" if not self._handle else f"t = {self.time:.4g} of {float(o['time_end']):.4g}"
-        return f"<petves.Simulation: {vesicles} in {flow}, {cells} cells, {sides}, {time}, {self.folder}>"
+        return f"<petves.Simulation: {vesicles} in {flow}, {cells}, {sides}, {time}, {self.folder}>"
 
     def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute of the package's own; others are refused, as they would change nothing."""
@@ -69,17 +75,18 @@ class State(Measures):
 
     @property
     def markers(self) -> np.ndarray:
-        """Markers of all vesicles (length), shape (M, 2), the same on every rank.
+        """Markers of all vesicles (length), shape (M, 2), the same on every rank; in three dimensions points of the surfaces,
+        as run.h5 has them, shape (M, 3).
 
         A read-only view without copy: after the next step it has other values, so copy what is to be kept. So are the
         other arrays.
         """
-        return self._gathered["markers"].reshape(-1, 2)
+        return self._gathered["markers"].reshape(-1, self._dim)
 
     @property
     def marker_velocity(self) -> np.ndarray:
-        """Velocity of the markers, background included (length/time), shape (M, 2), the same on every rank; a view."""
-        return self._gathered["marker_velocity"].reshape(-1, 2)
+        """Velocity of the markers, background included (length/time), of their shape, the same on every rank; a view."""
+        return self._gathered["marker_velocity"].reshape(-1, self._dim)
 
     @property
     def tension(self) -> np.ndarray:

@@ -1,17 +1,16 @@
 /* Questions about a simulation, and calls from programs that handle errors themselves (Python). */
 #include "app/simulation.h"
 #include "plane/cells.h"
-#include "plane/gathered.h"
 #include "scheme/fields.h"
 #include <locale.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-/* The plane, of which alone some questions are; stops in another kind of simulation. */
+/* The plane, which alone has a grid; stops in another kind of simulation. */
 static PetscErrorCode AskPlane(Simulation s, Plane *plane) {
   PetscFunctionBeginUser;
   *plane = PlaneOf(&s->model);
-  PetvesCheck(*plane, s->scene->comm, "-dim 3: not from Python or C; allowed: 2, or petves run");
+  PetvesCheck(*plane, s->scene->comm, "-dim 3: no grid to ask for; allowed: -dim 2");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,69 +36,32 @@ PetscErrorCode SimulationGetState(Simulation s, Vec *w, Vec *p, Vec *sigma, Vec 
 
 PetscErrorCode SimulationGatherMarkers(Simulation s, const PetscReal **markers, const PetscReal **velocity,
                                        const PetscReal **tension) {
-  const PetscReal **const wanted[] = {markers, velocity, tension}; /* STATE_MARKERS, STATE_VELOCITY, STATE_TENSION */
-  Plane plane;
+  const PetscReal **const wanted[MODEL_PARTS] = {markers, velocity, tension};
+  const PetscInt points = s->model.first[s->model.columns.vesicles];
   PetscFunctionBeginUser;
-  PetscCall(AskPlane(s, &plane));
-  for (int k = 0; k < 3; k++) {
-    const StatePart part = StatePartOf(plane->scheme, &plane->scheme->state, (StatePartName)k);
+  for (int k = 0; k < MODEL_PARTS; k++) {
     if (!wanted[k]) continue;
-    if (!s->gathered[k]) PetscCall(PetscMalloc1(part.n * part.each, &s->gathered[k]));
-    PetscCall(StateShow(plane->scheme, (StatePartName)k, s->gathered[k]));
+    if (!s->gathered[k]) PetscCall(PetscMalloc1(points * (k == MODEL_TENSION ? 1 : s->model.dim), &s->gathered[k]));
+    PetscCall(s->model.ops.gather(s->model.context, (ModelPart)k, s->gathered[k]));
     *wanted[k] = s->gathered[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PETSc objects by name. A name that this simulation has no object for gives NULL. */
-static PetscObject FindObject(Plane plane, const char name[]) {
-  const State *q = &plane->scheme->state;
-  const Fluid f = plane->fluid;
-  const Coupling c = plane->coupling;
-  const PetscBool any = CouplingHasMembrane(c);
-  const struct {
-    const char *name;
-    void *object;
-  } all[] = {{"velocity", q->w},
-             {"pressure", q->p},
-             {"tension", q->sigma},
-             {"markers", q->X},
-             {"marker_velocity", q->U},
-             {"dm_velocity", f->grid->velocity},
-             {"dm_u", f->grid->da[FIELD_U]},
-             {"dm_v", f->grid->da[FIELD_V]},
-             {"dm_pressure", f->grid->da[FIELD_P]},
-             {"pc_helmholtz", f->Hinv},
-             {"pc_poisson", f->Linv},
-             {"mat_G", f->G},
-             {"mat_D", f->D},
-             {"mat_L", f->L},
-             {"mat_H", f->H},
-             {"mat_E", any ? c->markers->E : NULL},
-             {"mat_S", any ? c->S : NULL},
-             {"mat_B", any ? c->B : NULL}};
-  for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
-    if (!strcmp(name, all[i].name)) return (PetscObject)all[i].object;
-  return NULL;
-}
-
 PetscErrorCode SimulationGetObject(Simulation s, const char name[], PetscObject *object) {
-  Plane plane;
   PetscFunctionBeginUser;
-  PetscCall(AskPlane(s, &plane));
-  if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(plane->scheme));
-  *object = FindObject(plane, name);
-  if (!*object) PetscCall(SchemeGetKSP(plane->scheme, name, (KSP *)object));
+  PetscCall(s->model.ops.object(s->model.context, name, object));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt start[], PetscInt sizes[7]) {
-  Plane plane;
+  const Plane plane = PlaneOf(&s->model);
   PetscFunctionBeginUser;
-  PetscCall(AskPlane(s, &plane));
+  *vesicles = s->model.columns.vesicles;
+  for (PetscInt v = 0; start && v <= *vesicles; v++) start[v] = s->model.first[v];
+  PetscCall(PetscArrayzero(sizes, 7));
+  if (!plane) PetscFunctionReturn(PETSC_SUCCESS);
   const Grid g = plane->fluid->grid;
-  *vesicles = plane->layout->bodies;
-  for (PetscInt v = 0; start && v <= plane->layout->bodies; v++) start[v] = plane->layout->start[v];
   sizes[0] = g->first;
   for (int f = FIELD_U; f <= FIELD_P; f++) {
     sizes[1 + 2 * f] = g->rows[f];
@@ -109,10 +71,9 @@ PetscErrorCode SimulationGetSizes(Simulation s, PetscInt *vesicles, PetscInt sta
 }
 
 PetscErrorCode SimulationGetObstacles(Simulation s, PetscInt *obstacles, PetscInt start[], PetscReal markers[]) {
-  Plane plane;
+  const Plane plane = PlaneOf(&s->model);
   PetscFunctionBeginUser;
-  PetscCall(AskPlane(s, &plane));
-  const Obstacles o = plane->coupling->bodies->obstacles;
+  const Obstacles o = plane ? plane->coupling->bodies->obstacles : NULL;
   *obstacles = o ? o->layout->bodies : 0;
   for (PetscInt v = 0; start && v <= *obstacles; v++) start[v] = o ? o->layout->start[v] : 0;
   if (o && markers) ObstaclesCurves(o, StateInstant(&plane->scheme->state), markers);

@@ -8,6 +8,9 @@
 #include "output/record.h"
 #include "scheme/stepcontrol.h"
 
+/* Of the points of membranes: markers in the plane, points of surfaces in space. */
+typedef enum { MODEL_POINTS, MODEL_VELOCITY, MODEL_TENSION, MODEL_PARTS } ModelPart;
+
 typedef struct {
   /* The run. start: solve the first state; does nothing after a step, and where the solve fails, as the first step will
      say why. step: one time step, to the time `until` at most; else model->failure says why there is none, and the
@@ -43,6 +46,11 @@ typedef struct {
   PetscErrorCode (*options)(void *context, FILE *file);
   void (*summary)(const void *context, FILE *file);
   PetscErrorCode (*table)(const void *context, const PetscReal last[]);
+
+  /* Callers. gather: a ModelPart of all vesicles on every rank, numbers[points][dim], of the tension numbers[points].
+     object: a PETSc object by its name, borrowed, NULL: there is none of this name. */
+  PetscErrorCode (*gather)(void *context, ModelPart part, PetscReal numbers[]);
+  PetscErrorCode (*object)(void *context, const char name[], PetscObject *object);
 } ModelOps;
 
 typedef struct {
@@ -55,4 +63,6 @@ typedef struct {
   const char *failure; /* why the step was not taken; empty: it was taken */
   const StepPolicy *policy;
   RecordSetting columns;
+  PetscInt dim;          /* coordinates of a point */
+  const PetscInt *first; /* [vesicles + 1] first point of each vesicle */
 } Model;

@@ -1,4 +1,6 @@
 #include "plane/plane.h"
+#include "plane/gathered.h"
+#include "scheme/fields.h"
 #include "baselines/baselines.h"
 
 static PetscErrorCode PlaneCreateCoupling(Scene scene, Plane p) {
@@ -126,6 +128,49 @@ static PetscErrorCode PlaneTable(const void *plane, const PetscReal row[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode PlaneGather(void *plane, ModelPart part, PetscReal numbers[]) {
+  const StatePartName name[MODEL_PARTS] = {STATE_MARKERS, STATE_VELOCITY, STATE_TENSION};
+  PetscFunctionBeginUser;
+  PetscCall(StateShow(((Plane)plane)->scheme, name[part], numbers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PlaneObject(void *plane, const char name[], PetscObject *object) {
+  const Plane p = plane;
+  const Fluid f = p->fluid;
+  const Coupling c = p->coupling;
+  const PetscBool any = CouplingHasMembrane(c);
+  PetscFunctionBeginUser;
+  if (!strcmp(name, "velocity") || !strcmp(name, "pressure")) PetscCall(SchemeFields(p->scheme));
+  const State *q = &p->scheme->state;
+  const struct {
+    const char *name;
+    void *object;
+  } all[] = {{"velocity", q->w},
+             {"pressure", q->p},
+             {"tension", q->sigma},
+             {"markers", q->X},
+             {"marker_velocity", q->U},
+             {"dm_velocity", f->grid->velocity},
+             {"dm_u", f->grid->da[FIELD_U]},
+             {"dm_v", f->grid->da[FIELD_V]},
+             {"dm_pressure", f->grid->da[FIELD_P]},
+             {"pc_helmholtz", f->Hinv},
+             {"pc_poisson", f->Linv},
+             {"mat_G", f->G},
+             {"mat_D", f->D},
+             {"mat_L", f->L},
+             {"mat_H", f->H},
+             {"mat_E", any ? c->markers->E : NULL},
+             {"mat_S", any ? c->S : NULL},
+             {"mat_B", any ? c->B : NULL}};
+  *object = NULL;
+  for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
+    if (!strcmp(name, all[i].name)) *object = (PetscObject)all[i].object;
+  if (!*object) PetscCall(SchemeGetKSP(p->scheme, name, (KSP *)object));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode PlaneDestroy(void *plane) {
   Plane p = plane;
   PetscFunctionBeginUser;
@@ -158,7 +203,9 @@ static const ModelOps PlaneOps = {.start = PlaneStart,
                                   .checkpoint = PlaneCheckpoint,
                                   .options = PlaneOptions,
                                   .summary = PlaneSummary,
-                                  .table = PlaneTable};
+                                  .table = PlaneTable,
+                                  .gather = PlaneGather,
+                                  .object = PlaneObject};
 
 PetscErrorCode PlaneCreate(Scene scene, Model *model) {
   RecordSetting columns;
@@ -186,7 +233,9 @@ PetscErrorCode PlaneCreate(Scene scene, Model *model) {
                    .dt = &s->state.dt,
                    .failure = s->report.failure,
                    .policy = &s->policy,
-                   .columns = columns};
+                   .columns = columns,
+                   .dim = 2,
+                   .first = p->layout->start};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

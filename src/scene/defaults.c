@@ -10,7 +10,8 @@ static PetscBool IsSpace(const void *scene) {
 }
 
 static PetscBool HasFormula(const void *scene) {
-  return SceneGiven((Scene)scene, "-flow_u") || SceneGiven((Scene)scene, "-flow_v");
+  const Scene s = (Scene)scene;
+  return SceneGiven(s, "-flow_u") || SceneGiven(s, "-flow_v") || (s->dim == DIM_SPACE && SceneGiven(s, "-flow_w"));
 }
 
 static PetscBool IsProjection(const void *scene) {

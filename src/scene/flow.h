@@ -20,7 +20,7 @@ typedef struct {
   PetscReal rate, peak, half_width, center[2];
   RealList velocity;                   /* FLOW_UNIFORM: u_x, u_y, in three dimensions u_z */
   PetscReal chi, ca, ca_stretching;    /* what the user gives in place of rate or peak */
-  char formula[2][PETSC_MAX_PATH_LEN]; /* FLOW_FORMULA: u_x, u_y */
+  char formula[3][PETSC_MAX_PATH_LEN]; /* FLOW_FORMULA: u_x, u_y, in three dimensions u_z */
   PetvesFlow function;                 /* FLOW_CUSTOM: the caller's, with its context; FLOW_FORMULA: the formulas' */
   void *ctx;
 } Flow;
@@ -30,9 +30,9 @@ static inline PetscBool FlowIsCustom(const Flow *flow) {
   return flow->type == FLOW_CUSTOM || flow->type == FLOW_FORMULA;
 }
 
-/* FlowReadFormulas - make the function of FLOW_FORMULA (formula.c). Collective; stops with the user's message.
-   FlowDropFormulas - free it. */
-PETSC_EXTERN PetscErrorCode FlowReadFormulas(MPI_Comm comm, Flow *flow);
+/* FlowReadFormulas - make the function of FLOW_FORMULA for points of dim coordinates (formula.c). Collective; stops
+   with the user's message. FlowDropFormulas - free it. */
+PETSC_EXTERN PetscErrorCode FlowReadFormulas(MPI_Comm comm, PetscInt dim, Flow *flow);
 PETSC_EXTERN PetscErrorCode FlowDropFormulas(Flow *flow);
 
 /* FlowVelocity - u_inf[2] at (x, y) and time t; NaN when a custom flow's function fails. */

@@ -1,23 +1,23 @@
-/* A background flow by formulas of x, y and t, read by muParser. */
+/* A background flow by formulas of the coordinates and t, read by muParser. */
 #include "scene/flow.h"
 #include "base/agree.h"
 #include <muParserDLL.h>
 
-static const char *const names[2] = {"-flow_u", "-flow_v"};
+static const char *const names[3] = {"-flow_u", "-flow_v", "-flow_w"}, *const coordinates[3] = {"x", "y", "z"};
 
 typedef struct {
-  muParserHandle_t parser[2]; /* of u_x and u_y */
-  muFloat_t x, y, t;          /* the variables */
+  PetscInt dim;
+  muParserHandle_t parser[3]; /* of u_x, u_y and u_z */
+  muFloat_t x[3], t;          /* the variables */
 } Formulas;
 
 /* A PetvesFlow: muParser gives infinity or no number where a formula has no value. */
 static PetscErrorCode FormulaVelocities(PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[], void *ctx) {
   Formulas *f = (Formulas *)ctx;
-  for (PetscInt k = 0; k < 2 * n; k++) {
-    f->x = X[k - k % 2];
-    f->y = X[k - k % 2 + 1];
-    f->t = t;
-    u[k] = mupEval(f->parser[k % 2]);
+  f->t = t;
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt d = 0; d < f->dim; d++) f->x[d] = X[f->dim * i + d];
+    for (PetscInt d = 0; d < f->dim; d++) u[f->dim * i + d] = mupEval(f->parser[d]);
   }
   return PETSC_SUCCESS;
 }
@@ -27,8 +27,7 @@ static void FormulaRead(Formulas *f, int component, const char text[], char wron
   const muParserHandle_t parser = mupCreate(muBASETYPE_FLOAT);
   int values = 0;
   f->parser[component] = parser;
-  mupDefineVar(parser, "x", &f->x);
-  mupDefineVar(parser, "y", &f->y);
+  for (PetscInt d = 0; d < f->dim; d++) mupDefineVar(parser, coordinates[d], &f->x[d]);
   mupDefineVar(parser, "t", &f->t);
   mupDefineConst(parser, "pi", PETSC_PI);
   mupSetExpr(parser, text);
@@ -43,19 +42,20 @@ static void FormulaRead(Formulas *f, int component, const char text[], char wron
   }
 }
 
-PetscErrorCode FlowReadFormulas(MPI_Comm comm, Flow *flow) {
+PetscErrorCode FlowReadFormulas(MPI_Comm comm, PetscInt dim, Flow *flow) {
   Formulas *f;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
   flow->function = FormulaVelocities;
   flow->ctx = f;
-  for (int k = 0; k < 2; k++) {
+  f->dim = dim;
+  for (int k = 0; k < dim; k++) {
     char wrong[PETVES_MAX_MESSAGE / 2];
     FormulaRead(f, k, flow->formula[k], wrong, sizeof(wrong));
     PetvesCheck(!*wrong, comm,
-                "%s %.100s: %s; allowed: a formula of x, y and t, in quotes, of numbers, pi, + - * / ^ ( ) and "
+                "%s %.100s: %s; allowed: a formula of x, y%s and t, in quotes, of numbers, pi, + - * / ^ ( ) and "
                 "functions like sin, exp, sqrt (docs/scenes.md)",
-                names[k], flow->formula[k], wrong);
+                names[k], flow->formula[k], wrong, dim == 3 ? ", z" : "");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,7 +63,7 @@ PetscErrorCode FlowReadFormulas(MPI_Comm comm, Flow *flow) {
 PetscErrorCode FlowDropFormulas(Flow *flow) {
   Formulas *f = flow->type == FLOW_FORMULA ? (Formulas *)flow->ctx : NULL;
   PetscFunctionBeginUser;
-  for (int k = 0; f && k < 2; k++)
+  for (int k = 0; f && k < f->dim; k++)
     if (f->parser[k]) mupRelease(f->parser[k]);
   PetscCall(PetscFree(f));
   flow->ctx = NULL;

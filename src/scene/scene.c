@@ -13,6 +13,17 @@ static void SceneChooseStiffness(Draft s) {
   s->scheme.stiffness = 0.5 * (bound[0] * s->fluid.nu * h / dt + bound[1] * h * PetscSqr(h / dt));
 }
 
+/* The function of a caller's flow, or of formulas. */
+static PetscErrorCode SceneSetFlow(Draft s, PetvesFlow flow, void *ctx) {
+  PetscFunctionBeginUser;
+  PetscCheck(flow || s->flow.type != FLOW_CUSTOM, s->comm, PETSC_ERR_USER_INPUT,
+             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
+  s->flow.function = flow;
+  s->flow.ctx = ctx;
+  if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(s->comm, s->dim == DIM_SPACE ? 3 : 2, &s->flow));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out) {
   Draft s;
   PetscFunctionBeginUser;
@@ -25,6 +36,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   PetscCall(SceneReadOptions(comm, s));
   if (s->dim == DIM_SPACE) {
     PetscCall(OptionsDepend(&s->options, s));
+    PetscCall(SceneSetFlow(s, flow, ctx));
     PetscCall(SceneResolveSpace(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -38,11 +50,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   PetscCall(SceneChooseByError(s, AUTO_DOMAIN));
   PetscCall(OptionsDepend(&s->options, s));
   PetscCall(SceneCheckCells(s));
-  PetscCheck(flow || s->flow.type != FLOW_CUSTOM, comm, PETSC_ERR_USER_INPUT,
-             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
-  s->flow.function = flow;
-  s->flow.ctx = ctx;
-  if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(comm, &s->flow));
+  PetscCall(SceneSetFlow(s, flow, ctx));
   s->fluid.comm = s->comm;
   s->fluid.flow = &s->flow;
   for (int k = 0; k < 4; k++) s->fluid.box[k] = s->domain.box.v[k]; /* a list whose length has been checked */

@@ -1,5 +1,6 @@
 #include "scene/space.h"
 #include "scene/checks.h"
+#include "scene/flow3.h"
 #include "scene/properties.h"
 
 /* What scenes of the other dimension have in place of an option. */
@@ -69,8 +70,9 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   const PetscBool ratio = SceneHasContrast(s);
   for (PetscInt k = 0; k < s->membrane.stiffness.n; k++) softest = PetscMin(softest, s->membrane.stiffness.v[k]);
   const SceneRule rules[] = {
-      {FlowIsCustom(&s->flow), "-flow_type {-flow_type}: of the plane; allowed with -dim 3: "
-                               "quiescent|shear|poiseuille|extension|uniform|axial|tube"},
+      {s->flow.type == FLOW_FORMULA && !SceneGiven(s, "-flow_u") && !SceneGiven(s, "-flow_v") &&
+           !SceneGiven(s, "-flow_w"),
+       "-flow_type formula: no formula given; allowed: with -flow_u, -flow_v or -flow_w"},
       {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3,
        "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
       {strcmp(s->scheme.type, "coupled") != 0,
@@ -96,7 +98,9 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   SceneSpaceScales(s, &R0, &bending, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0 * R0 * R0);
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0 * R0);
-  if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(FlowShearRate(&s->flow), relaxation);
+  PetscReal rate = FlowShearRate(&s->flow);
+  PetscCall(Flow3Check(s->comm, &s->flow, count, &s->vesicles.center, R0, s->time.end, &rate));
+  if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(rate, relaxation);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,21 +119,4 @@ PetscErrorCode SceneViewSpace(Scene s, PetscViewer v) {
                                    (double)s->space.label_rate));
   PetscCall(PetscViewerASCIIPopTab(v));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void Flow3Velocities(const Flow *f, PetscInt n, const PetscReal X[], PetscReal u[]) {
-  const PetscReal L2 = f->half_width * f->half_width;
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal x = X[i] - f->center[0], y = X[n + i] - f->center[1], z = X[2 * n + i];
-    PetscReal at[3] = {0, 0, 0};
-    if (f->type == FLOW_SHEAR) at[0] = f->rate * y;
-    if (f->type == FLOW_POISEUILLE) at[0] = f->peak * (1 - y * y / L2);
-    if (f->type == FLOW_TUBE) at[0] = f->peak * (1 - (y * y + z * z) / L2);
-    if (f->type == FLOW_EXTENSION || f->type == FLOW_AXIAL) {
-      at[0] = f->rate * x;
-      at[1] = -f->rate * y * (f->type == FLOW_AXIAL ? 0.5 : 1);
-      at[2] = f->type == FLOW_AXIAL ? -0.5 * f->rate * z : 0;
-    }
-    for (int d = 0; d < 3; d++) u[d * n + i] = f->type == FLOW_UNIFORM ? f->velocity.v[d] : at[d];
-  }
 }

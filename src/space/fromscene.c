@@ -1,8 +1,11 @@
 #include "space/fromscene.h"
+#include "scene/flow3.h"
 #include "sphere/shape.h"
 
-static void SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
-  Flow3Velocities((const Flow *)flow, n, X, u);
+static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+  PetscFunctionBeginUser;
+  PetscCall(Flow3Velocities((const Flow *)flow, t, n, X, u));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Coefficients of a vesicle's first shape. */

@@ -107,7 +107,7 @@ static PetscErrorCode SpaceChooseOrder(Space s, PetscReal dt) {
 /* X*, Xhat; surfaces and u_inf at X* at time t. */
 static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
   const PetscReal *X[BDF_MOST] = {s->state.X};
-  int good = 1;
+  int good = 1, finite = 1;
   PetscFunctionBeginUser;
   for (int j = 1; j < BDF_MOST; j++) X[j] = s->old[j - 1].X;
   for (PetscInt k = 0; k < s->share.own * s->size; k++) {
@@ -131,12 +131,16 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     PetscCall(Vesicle3Place(vesicle, s->work.Xstar + v * s->size, s->state.sigma + v * s->count, &done));
     if (!done) good = 0;
     PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
-    s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u);
+    PetscCall(s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u));
     PetscCall(SphereTableProject(&s->sphere->fine, s->count, 3, u, s->work.background + v * s->size));
+    for (PetscInt k = 0; k < s->size; k++)
+      if (PetscIsInfOrNanReal(s->work.background[v * s->size + k])) finite = 0;
     PetscCall(Vesicle3Velocity(vesicle, s->work.background + v * s->size));
     PetscCall(PetscFree(u));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
+  if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));
   if (!good)
     PetscCall(PetscStrncpy(s->report.failure, "the double layer of a vesicle is singular", PETVES_MAX_MESSAGE));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,8 +11,8 @@
 #include "space/crosslayer.h"
 #include "space/vesicle3.h"
 
-/* A background flow: u[3][n] at the points X[3][n] at time t. */
-typedef void (*Flow3)(const void *context, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]);
+/* A background flow: u[3][n] at the points X[3][n] at time t, not finite where it fails. Not collective. */
+typedef PetscErrorCode (*Flow3)(const void *context, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]);
 
 /* The caller fills it in before SpaceCreate. */
 typedef struct {

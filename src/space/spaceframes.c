@@ -9,7 +9,8 @@ PetscErrorCode SpaceFramesPoints(SpaceModel m) {
   PetscReal *theta, *phi;
   PetscFunctionBeginUser;
   m->points = g->n + 2;
-  PetscCall(PetscMalloc1(m->space->count * m->points, &m->Y));
+  PetscCall(PetscMalloc2(m->space->count * m->points, &m->Y, m->space->share.vesicles + 1, &m->first));
+  for (PetscInt v = 0; v <= m->space->share.vesicles; v++) m->first[v] = v * m->points;
   PetscCall(PetscMalloc2(m->points, &theta, m->points, &phi));
   PetscCall(PetscArraycpy(theta, g->theta, g->n));
   PetscCall(PetscArraycpy(phi, g->phi, g->n));
@@ -77,23 +78,22 @@ PetscErrorCode SpaceSeries(void *model, AppendedKind *kind) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The next entry of a series: fields with coefficients own[own][fields][count], at all points [vesicles
- * points][fields]. */
-static PetscErrorCode SpaceFramesSet(SpaceModel m, AppendedFile *file, PetscInt series, PetscInt fields,
-                                     const PetscReal own[]) {
+PetscErrorCode SpaceGather(void *model, ModelPart part, PetscReal y[]) {
+  const SpaceModel m = model;
   const Space s = m->space;
-  PetscReal *c, *y;
+  const PetscReal *const own[MODEL_PARTS] = {s->state.X, s->state.U, s->state.sigma};
+  const PetscInt fields = part == MODEL_TENSION ? 1 : 3;
+  PetscReal *c;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->share.vesicles * fields * s->count, &c, s->share.vesicles * fields * m->points, &y));
-  PetscCall(ShareGather(&s->share, fields * s->count, own, c));
+  PetscCall(PetscMalloc1(s->share.vesicles * fields * s->count, &c));
+  PetscCall(ShareGather(&s->share, fields * s->count, own[part], c));
   PetscCall(PetscArrayzero(y, s->share.vesicles * fields * m->points));
-  for (PetscInt v = 0; v < s->share.vesicles && !file->file.rank; v++)
+  for (PetscInt v = 0; v < s->share.vesicles; v++)
     for (PetscInt f = 0; f < fields; f++)
       for (PetscInt k = 0; k < s->count; k++)
         for (PetscInt i = 0; i < m->points; i++)
           y[(v * m->points + i) * fields + f] += c[(v * fields + f) * s->count + k] * m->Y[k * m->points + i];
-  AppendedSet(file, series, y);
-  PetscCall(PetscFree2(c, y));
+  PetscCall(PetscFree(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,12 +102,13 @@ PetscErrorCode SpaceFrame(void *model, AppendedFile *file) {
   const Space s = m->space;
   PetscReal *all;
   PetscFunctionBeginUser;
-  PetscCall(SpaceFramesSet(m, file, 0, 3, s->state.X));
-  PetscCall(SpaceFramesSet(m, file, 1, 3, s->state.U));
-  PetscCall(SpaceFramesSet(m, file, 2, 1, s->state.sigma));
-  PetscCall(PetscMalloc1(s->share.vesicles * s->size, &all));
+  PetscCall(PetscMalloc1(s->share.vesicles * 3 * PetscMax(m->points, s->count), &all));
+  for (int part = 0; part < MODEL_PARTS; part++) {
+    PetscCall(SpaceGather(m, (ModelPart)part, all));
+    AppendedSet(file, part, all);
+  }
   PetscCall(ShareGather(&s->share, s->size, s->state.X, all));
-  AppendedSet(file, 3, all);
+  AppendedSet(file, MODEL_PARTS, all);
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -190,11 +190,18 @@ static PetscErrorCode SpaceTable(const void *model, const PetscReal last[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode SpaceObject(void *model, const char name[], PetscObject *object) {
+  const Space s = ((SpaceModel)model)->space;
+  PetscFunctionBeginUser;
+  *object = strcmp(name, "coupled_") ? NULL : (PetscObject)s->ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SpaceModelDestroy(void *model) {
   SpaceModel m = model;
   PetscFunctionBeginUser;
   PetscCall(SpaceDestroy(&m->space));
-  PetscCall(PetscFree(m->Y));
+  PetscCall(PetscFree2(m->Y, m->first));
   PetscCall(PetscFree(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,7 +220,9 @@ static const ModelOps SpaceOps = {.start = SpaceModelStart,
                                   .print = SpacePrint,
                                   .checkpoint = SpaceCheckpoint,
                                   .summary = SpaceSummary,
-                                  .table = SpaceTable};
+                                  .table = SpaceTable,
+                                  .gather = SpaceGather,
+                                  .object = SpaceObject};
 
 PetscErrorCode SpaceModelCreate(Scene scene, Model *model) {
   SpaceModel m;
@@ -232,6 +241,8 @@ PetscErrorCode SpaceModelCreate(Scene scene, Model *model) {
                    .dt = &s->setting.policy.base,
                    .failure = s->report.failure,
                    .policy = &s->setting.policy,
-                   .columns = {.vesicles = s->share.vesicles, .columns = SPACE_COUNT, .column = SpaceColumnList}};
+                   .columns = {.vesicles = s->share.vesicles, .columns = SPACE_COUNT, .column = SpaceColumnList},
+                   .dim = 3,
+                   .first = m->first};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -48,6 +48,7 @@ struct _p_SpaceModel {
   Space space;
   PetscInt its;                     /* iterations of the run */
   PetscInt points;                  /* of a vesicle in frames */
+  PetscInt *first;                  /* [vesicles + 1] first point of each */
   PetscReal *Y;                     /* [count][points] harmonics there */
   char warning[PETVES_MAX_MESSAGE]; /* that harmonics do not resolve a shape; empty: none */
 };
@@ -56,9 +57,10 @@ struct _p_SpaceModel {
    destroys what has been made. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceModelCreate(Scene scene, Model *model);
 
-/* SpaceFramesPoints - the points of frames and their harmonics. SpaceSeries, SpaceDescribe, SpaceFrame, SpacePrint -
-   frames (ModelOps; spaceframes.c). */
+/* SpaceFramesPoints - the points of frames and their harmonics. SpaceGather, SpaceSeries, SpaceDescribe, SpaceFrame,
+   SpacePrint - points for callers, and frames (ModelOps; spaceframes.c). */
 PETSC_EXTERN PetscErrorCode SpaceFramesPoints(SpaceModel model);
+PETSC_EXTERN PetscErrorCode SpaceGather(void *model, ModelPart part, PetscReal numbers[]);
 PETSC_EXTERN PetscErrorCode SpaceSeries(void *model, AppendedKind *kind);
 PETSC_EXTERN PetscErrorCode SpaceDescribe(const void *model, H5File *file);
 PETSC_EXTERN PetscErrorCode SpaceFrame(void *model, AppendedFile *file);

@@ -67,9 +67,39 @@ def test_compare_says_what_differs(pair, tmp_path):
     assert f"Markers: {np.linalg.norm(a - b, axis=-1).max():.3e} apart at most (length) at 3 common" in lines[-1]
 
 
-def test_a_simulation_in_space_is_refused():
-    done = run_python("import petves; petves.Simulation(dim=3)", good=False)
-    assert done.returncode == 1 and "-dim 3: not from Python or C; allowed: 2, or petves run" in done.stderr
+IN_SPACE = "dim=3, vesicle_reduced_volume=0.9, vesicle_bending=0.1, sphere_degree=8, time_step=0.2, time_end=0.6"
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_simulation_from_python(ranks, tmp_path):
+    """The flow of a function is that of the same name; what the plane alone has is refused."""
+    code = f"""
+import numpy as np, petves
+with petves.Simulation({IN_SPACE}, flow_type="shear", output_dir={str(tmp_path / "run")!r}) as sim:
+    sim.step()
+    assert sim.markers.shape == sim.marker_velocity.shape == (164, 3) and sim.tension.shape == (164,)
+    assert sim.run() == "finished" and sim.time == 0.6 and list(sim.ksp) == ["coupled"] and sim.obstacles == []
+    assert "three dimensions, degree 8" in repr(sim)
+    angle, markers = sim.inclination, sim.markers.copy()
+    try:
+        sim.cell_velocity()
+    except petves.Error as error:
+        assert "-dim 3: no grid to ask for" in str(error)
+    else:
+        raise AssertionError
+with petves.Simulation({IN_SPACE}, flow=lambda x, y, z, t: (y, 0 * y, 0 * z)) as sim:
+    sim.run()
+    assert abs(sim.inclination - angle) < 1e-12 and np.allclose(sim.markers, markers, atol=1e-12)
+def late(x, y, z, t):
+    return (y, 0, 0) if t < 0.5 else 1 / 0
+try:
+    with petves.Simulation({IN_SPACE}, flow=late) as sim:
+        sim.run()
+except (ZeroDivisionError, petves.Error):  # where the flow is not called
+    assert sim.time == 0.4
+"""
+    run_python(code, ranks=ranks)
+    assert petves.load(tmp_path / "run", kind="numpy").series["time"][-1] == 0.6
 
 
 @pytest.mark.skipif(not (SITE / "vtk.py").exists(), reason="vtk is not to be had")

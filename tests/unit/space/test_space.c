@@ -41,11 +41,12 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
   TestCall(SphereDestroy(&sphere));
 }
 
-static void Shear(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+static PetscErrorCode Shear(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   for (PetscInt i = 0; i < n; i++) {
     u[i] = *(const PetscReal *)rate * X[n + i];
     u[n + i] = u[2 * n + i] = 0;
   }
+  return PETSC_SUCCESS;
 }
 
 /* Two vesicles in shear take three steps: what the rows say of the solution, and that forces do no work on M alone. */
