@@ -30,17 +30,14 @@ static PetscErrorCode OutputOpenFiles(Output o) {
   static const char *const files[] = {"run.h5", "run.h5.new", "vesicles.h5", "vesicles.h5.new"};
   PetscInt rows = APPENDED_NEW;
   PetscFunctionBeginUser;
-  if (o->go_on)
-    PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, *m->step, restart, &rows));
-  else
-    PetscCall(SeriesPrepare(&o->series, &o->folder, o->record.header, o->record.text));
+  if (o->go_on) PetscCall(SeriesCut(&o->series, &o->folder, o->record.header, *m->step, restart, &rows));
   FolderRemove(&o->folder, "summary.json"); /* what would be taken for this run's, as checkpoints are */
   for (int k = 0; k < 4 && !o->go_on; k++) FolderRemove(&o->folder, files[k]);
   if (!o->go_on) CheckpointClear(&o->folder);
   PetscCall(OutputOpenFrames(o));
   PetscCall(VesicleFileOpen(&o->vesicles, &o->folder, &m->columns, *m->t, rows, restart));
   if (o->go_on) PetscCall(XdmfWrite(&o->xdmf, &o->frames));
-  PetscCall(SeriesOpen(&o->series));
+  PetscCall(SeriesOpen(&o->series, &o->folder, o->record.header, o->record.text));
   if (o->go_on) PetscCall(CheckpointAdopt(&o->checkpoint, restart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,21 +5,6 @@
 #define SERIES "series.csv"
 #define SERIES_TEMPORARY "series.csv.tmp"
 
-PetscErrorCode SeriesPrepare(Series *s, Folder *folder, const char header[], const char row[]) {
-  char temporary[PETSC_MAX_PATH_LEN];
-  PetscBool written = PETSC_TRUE;
-  PetscFunctionBeginUser;
-  s->folder = folder;
-  FolderPath(folder, SERIES_TEMPORARY, temporary);
-  if (!folder->rank) {
-    FILE *f = FileNew(temporary);
-    if (f) fprintf(f, *row ? "%s\n%s\n" : "%s\n", header, row);
-    written = f && !fclose(f);
-  }
-  PetscCall(FolderCheck(folder, written, SERIES));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Copy the file up to the row of `step` to the temporary name and count the rows; what is wrong with the file, or "".
  */
 static const char *SeriesCopyRows(const char path[], const char temporary[], const char header[], PetscInt step,
@@ -54,7 +39,7 @@ PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscIn
                          PetscInt *rows) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN], wrong[64] = "";
   PetscFunctionBeginUser;
-  s->folder = folder;
+  s->cut = PETSC_TRUE;
   FolderPath(folder, SERIES, path);
   FolderPath(folder, SERIES_TEMPORARY, temporary);
   if (!folder->rank) PetscCall(PetscStrncpy(wrong, SeriesCopyRows(path, temporary, header, step, rows), sizeof(wrong)));
@@ -66,15 +51,23 @@ PetscErrorCode SeriesCut(Series *s, Folder *folder, const char header[], PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SeriesOpen(Series *s) {
+static PetscErrorCode SeriesPrintFirst(FILE *file, const void *lines) {
+  const char *const *line = lines;
+  fprintf(file, *line[1] ? "%s\n%s\n" : "%s\n", line[0], line[1]);
+  return PETSC_SUCCESS;
+}
+
+PetscErrorCode SeriesOpen(Series *s, Folder *folder, const char header[], const char row[]) {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
   PetscFunctionBeginUser;
-  FolderPath(s->folder, SERIES, path);
-  FolderPath(s->folder, SERIES_TEMPORARY, temporary);
-  if (!s->folder->rank && !rename(temporary, path)) s->file = fopen(path, "a");
-  PetscCall(FolderCheck(s->folder, s->file != NULL, SERIES));
+  s->folder = folder;
+  if (!s->cut) PetscCall(FolderWriteText(folder, SERIES, SeriesPrintFirst, (const char *[]){header, row}));
+  FolderPath(folder, SERIES, path);
+  FolderPath(folder, SERIES_TEMPORARY, temporary);
+  if (!folder->rank && (!s->cut || !rename(temporary, path))) s->file = fopen(path, "a");
+  PetscCall(FolderCheck(folder, folder->rank || s->file, SERIES));
   if (s->file) (void)setvbuf(s->file, NULL, _IOLBF, 0); /* each row at once */
-  FolderWatch(s->folder, SERIES);
+  FolderWatch(folder, SERIES);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
