@@ -64,13 +64,12 @@ static PetscErrorCode PlaneOptions(void *plane, FILE *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That of the scene first. */
+/* The warning of the scene comes first. */
 static const char *PlaneWarning(const void *plane, PetscInt i) {
   const Plane p = (Plane)plane;
   const Warnings *warnings = &p->scheme->warnings;
-  const PetscInt own = *p->scene->warning ? 1 : 0;
-  if (i >= 0 && i < own) return p->scene->warning;
-  return i >= own && i < own + warnings->n ? warnings->text[i - own] : NULL;
+  if (*p->scene->warning && i-- == 0) return p->scene->warning;
+  return i >= 0 && i < warnings->n ? warnings->text[i] : NULL;
 }
 
 static void PlaneSummary(const void *plane, FILE *f) {

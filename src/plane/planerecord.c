@@ -104,7 +104,7 @@ static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
 }
 
 /* The columns of obstacles, which are zero. */
-static PetscErrorCode ObstaclesReport(Scheme s, PetscReal values[]) {
+static PetscErrorCode ObstaclesRow(Scheme s, PetscReal values[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscScalar *F;
   ObstacleLoad *load;
@@ -224,7 +224,7 @@ PetscErrorCode PlaneMeasure(void *plane, PetscReal each[], PetscReal last[]) {
 }
 
 /* The energies that have columns of their own, of all vesicles. */
-static PetscErrorCode EnergiesReport(Plane p, PetscReal *next) {
+static PetscErrorCode EnergiesRow(Plane p, PetscReal *next) {
   const Layout l = p->membrane->layout;
   const Forces forces = p->coupling->forces;
   const PetscScalar *X;
@@ -262,8 +262,8 @@ PetscErrorCode PlaneRow(void *plane, PetscReal row[]) {
     row[COLUMN_NORMAL_WALL + k] = report->stress.known ? report->stress.normal[k] : NAN;
   }
   if (!s->membrane->layout->bodies) row[COLUMN_FREQUENCY] = NAN;
-  PetscCall(ObstaclesReport(s, row + COLUMN_COUNT));
-  PetscCall(EnergiesReport(p, row + COLUMN_COUNT + ObstacleRowCount(&p->scene->obstacles)));
+  PetscCall(ObstaclesRow(s, row + COLUMN_COUNT));
+  PetscCall(EnergiesRow(p, row + COLUMN_COUNT + ObstacleRowCount(&p->scene->obstacles)));
   p->totals[TOTAL_SOLVES] += report->solves;
   p->totals[TOTAL_TENSION] += report->tension_its;
   p->totals[TOTAL_BENDING] += report->bending_its;
