@@ -1,6 +1,7 @@
 """Pictures of runs: curves through markers, windows that go along, sheets without overlaps, what a look refuses."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -113,11 +114,16 @@ def test_membranes_of_small_vesicles_are_thin(run):
     assert widths[0] == 0.6 * 4 > widths[1] > widths[2] == 0.6
 
 
-@pytest.mark.parametrize("form, first", [("svg", b"<?xml"), ("pdf", b"%PDF")])
-def test_formats(form, first, run):
+@pytest.mark.parametrize(
+    "form, first, letters", [("svg", b"<?xml", rb"<text[^>]*>relative error</text>"), ("pdf", b"%PDF", b"/FontFile2")]
+)
+def test_formats(form, first, letters, run):
+    """Their letters are letters, not outlines."""
     paths = plot_run(run.folder, Look(format=form, dpi=50, width=5, cmap="cividis", follow=1))
     assert [path.name for path in paths] == [f"{name}.{form}" for name in NAMES]
-    assert all(path.read_bytes().startswith(first) for path in paths)
+    pages = [path.read_bytes() for path in paths]
+    assert all(page.startswith(first) and b"/Type3" not in page for page in pages)
+    assert all(re.search(letters, page) for page in (pages if form == "pdf" else pages[2:3]))
 
 
 NAMES = ("energy", "field", "conservation", "motion", "tension", "shapes")

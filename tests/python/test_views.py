@@ -1,7 +1,5 @@
 """petves plot at the widths of journals, its pictures of one time, of columns and of quantities; kinds, bumps and films."""
 
-import re
-
 import numpy as np
 import pytest
 
@@ -155,14 +153,6 @@ def test_a_bump_ends_at_the_foot_of_its_curve(folders):
     assert abs(on_wall[:, 0].min() - 1) < 0.06 and abs(on_wall[:, 0].max() - 2) < 0.06
     inside = solid[(solid[:, 1] > 0)]
     np.testing.assert_allclose(inside[:, 1], 0.1 * (1 + np.cos(2 * np.pi * (inside[:, 0] - 1.5))), atol=0.01)
-
-
-def test_letters_of_pdf_and_svg_are_letters(folders):
-    folder = folders("pair")
-    for path in plot_run(folder, Look(format="pdf"), columns=["gap"]):
-        assert b"/Type3" not in path.read_bytes() and b"/FontFile2" in path.read_bytes()
-    for path in plot_run(folder, Look(format="svg"), columns=["gap"]):
-        assert re.search(r"<text[^>]*>gap</text>", path.read_text())
 
 
 def test_report_names_solids_forces_and_warnings(folders):
