@@ -123,7 +123,7 @@ def _orders(results: Results, folder: Path) -> list[str]:
             for name, dt in allowed.items():
                 known = sorted(steps)
                 its = np.interp(np.log(dt), np.log(known), [found[name][k]["its"] for k in known]) if dt else np.nan
-                rows.append([scene, name, wanted, dt if dt else np.nan, its])
+                rows.append([scene, name, wanted, float(f"{dt or np.nan:.6g}"), round(float(its), 1)])
                 mark = "> " if dt == max(steps) else ""
                 cell.append(f"{mark}{dt:.2g} ({its:.0f})" if dt else f"< {min(steps):g}")
             line.append("; ".join(cell))
