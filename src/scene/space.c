@@ -46,17 +46,19 @@ static PetscErrorCode SceneCheckSpaceLists(Scene s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest radius and bending modulus, of which -flow_chi and -flow_ca are, and the fastest rate of relaxation: the
-   largest modulus over nu R0^3 of a vesicle (1/time). */
-static void SceneSpaceScales(Scene s, PetscReal *R0, PetscReal *bending, PetscReal *relaxation) {
-  *R0 = *bending = *relaxation = 0;
+/* R0: the largest radius and the least. The largest bending modulus, of which with the largest radius -flow_chi and
+   -flow_ca are. The fastest rate of relaxation: the largest modulus over nu R0^3 of a vesicle (1/time). */
+static void SceneSpaceScales(Scene s, PetscReal R0[2], PetscReal *bending, PetscReal *relaxation) {
+  R0[0] = *bending = *relaxation = 0;
+  R0[1] = PETSC_MAX_REAL;
   for (PetscInt v = 0; v < s->vesicles.count; v++) {
     const PetscReal kappa = ListEntry(&s->membrane.stiffness, 1, v, 0);
     PetscReal R = ListEntry(&s->space.radius, 1, v, 0);
     if (SceneGiven(s, "-vesicle_half_axes"))
       R = PetscCbrtReal(ListEntry(&s->space.half_axes, 3, v, 0) * ListEntry(&s->space.half_axes, 3, v, 1) *
                         ListEntry(&s->space.half_axes, 3, v, 2));
-    *R0 = PetscMax(*R0, R);
+    R0[0] = PetscMax(R0[0], R);
+    R0[1] = PetscMin(R0[1], R);
     *bending = PetscMax(*bending, kappa);
     *relaxation = PetscMax(*relaxation, kappa / (s->fluid.nu * R * R * R));
   }
@@ -64,7 +66,7 @@ static void SceneSpaceScales(Scene s, PetscReal *R0, PetscReal *bending, PetscRe
 
 PetscErrorCode SceneResolveSpace(Draft s) {
   const PetscInt count = s->vesicles.count;
-  PetscReal R0, bending, relaxation, softest = PETSC_MAX_REAL;
+  PetscReal R0[2], bending, relaxation, softest = PETSC_MAX_REAL;
   PetscFunctionBeginUser;
   PetscCall(SceneCheckSpaceLists(s));
   const PetscBool ratio = SceneHasContrast(s);
@@ -95,11 +97,12 @@ PetscErrorCode SceneResolveSpace(Draft s) {
     PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
                               "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
-  SceneSpaceScales(s, &R0, &bending, &relaxation);
-  if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0 * R0 * R0);
-  if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0 * R0);
+  SceneSpaceScales(s, R0, &bending, &relaxation);
+  if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0[0] * R0[0] * R0[0]);
+  if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0[0] * R0[0]);
+  if (s->repulsion.range == 0) s->repulsion.range = R0[1] / 10;
   PetscReal rate = FlowShearRate(&s->flow);
-  PetscCall(Flow3Check(s->comm, &s->flow, count, &s->vesicles.center, R0, s->time.end, &rate));
+  PetscCall(Flow3Check(s->comm, &s->flow, count, &s->vesicles.center, R0[0], s->time.end, &rate));
   if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(rate, relaxation);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,7 +19,7 @@ PetscErrorCode ShareScatter(const VesicleShare *s, PetscInt each, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, CrossLayer *out) {
+PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, Contact3Law law, CrossLayer *out) {
   CrossLayer c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
@@ -27,6 +27,7 @@ PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu,
   c->sphere = sphere;
   c->share = share;
   c->nu = nu;
+  c->law = law;
   PetscCall(PetscMalloc3(share.vesicles * 3 * sphere->count, &c->X, share.vesicles * 3 * sphere->shape.grid.n,
                          &c->points, share.own * share.vesicles, &c->pair));
   PetscCall(NearTablesCreate(&c->tables));
@@ -36,7 +37,10 @@ PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu,
 /* No pair is near. */
 static PetscErrorCode CrossForgetPairs(CrossLayer c) {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->pairs; k++) PetscCall(NearPairDestroy(&c->pair[k].near));
+  for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
+    PetscCall(Contact3Destroy(&pair->contact));
+    PetscCall(NearPairDestroy(&pair->near));
+  }
   c->pairs = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -164,6 +168,26 @@ PetscErrorCode CrossLayerMeasure(CrossLayer c, const PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Contacts of the near pairs. */
+static PetscErrorCode CrossFindContacts(CrossLayer c) {
+  const PetscInt count = c->sphere->count;
+  Surface s;
+  PetscReal *J;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * count, &J));
+  PetscCall(SurfaceCreate(c->sphere, &s));
+  for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
+    for (int side = 0; side < 2; side++) {
+      PetscCall(SurfacePlace(s, c->X + pair->surface[side] * 3 * count, PETSC_FALSE));
+      PetscCall(SphereTableProject(&c->sphere->fine, count, 1, s->J, J + side * count));
+    }
+    PetscCall(Contact3Create(&c->law, pair->near, J, J + count, &pair->contact));
+  }
+  PetscCall(SurfaceDestroy(&s));
+  PetscCall(PetscFree(J));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
   const PetscInt count = c->sphere->count;
   PetscFunctionBeginUser;
@@ -173,6 +197,7 @@ PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
   for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++)
     PetscCall(NearPairCreate(c->sphere, &c->tables, pair->spacing, c->X + pair->surface[0] * 3 * count,
                              c->X + pair->surface[1] * 3 * count, &pair->near));
+  if (c->law.stress > 0) PetscCall(CrossFindContacts(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -240,6 +265,51 @@ PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
     }
     PetscCall(NearPairAdd(pair->near, f, u));
   }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CrossLayerEnergy(CrossLayer c, PetscReal *energy) {
+  PetscFunctionBeginUser;
+  *energy = 0;
+  for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++)
+    if (ShareOwns(&c->share, pair->surface[0])) *energy += pair->contact.energy;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, 1, MPIU_REAL, MPI_SUM, c->share.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* G += the gradient of the energy, or what changes all[vesicles][size] add to it. */
+static PetscErrorCode CrossAddContacts(CrossLayer c, const PetscReal all[], PetscReal G[]) {
+  const VesicleShare *s = &c->share;
+  const PetscInt size = 3 * c->sphere->count;
+  PetscFunctionBeginUser;
+  for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
+    const PetscReal *moved[2];
+    PetscReal *g[2];
+    for (int side = 0; side < 2; side++) {
+      const PetscInt v = pair->surface[side];
+      moved[side] = all ? all + v * size : NULL;
+      g[side] = ShareOwns(s, v) ? G + (v - s->first) * size : NULL;
+    }
+    PetscCall(Contact3Add(&pair->contact, c->sphere->count, all ? moved : NULL, g));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CrossLayerAddRepulsion(CrossLayer c, PetscReal G[]) {
+  PetscFunctionBeginUser;
+  PetscCall(CrossAddContacts(c, NULL, G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CrossLayerAddStiffness(CrossLayer c, const PetscReal change[], PetscReal G[]) {
+  const PetscInt size = 3 * c->sphere->count;
+  PetscReal *all;
+  PetscFunctionBeginUser;
+  if (c->law.stress <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(c->share.vesicles * size, &all));
+  PetscCall(ShareGather(&c->share, size, change, all));
+  PetscCall(CrossAddContacts(c, all, G));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

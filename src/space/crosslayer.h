@@ -2,7 +2,7 @@
    grids of degree p, and by finer grids where surfaces are near (nearlayer.h). The matrix between the coefficients of
    two surfaces is the transpose of that the other way. Every rank knows all surfaces and sums for its own. */
 #pragma once
-#include "space/nearlayer.h"
+#include "space/contact3.h"
 
 /* Which vesicles a rank owns. */
 typedef struct {
@@ -21,6 +21,7 @@ typedef struct {
   PetscInt surface[2];
   PetscReal spacing; /* the larger one of the grids of degree p */
   NearPair near;     /* NULL: not made */
+  Contact3 contact;
 } CrossPair;
 
 typedef struct _p_CrossLayer *CrossLayer;
@@ -28,6 +29,7 @@ struct _p_CrossLayer {
   Sphere sphere; /* borrowed */
   VesicleShare share;
   PetscReal nu;
+  Contact3Law law;
   PetscReal *X;      /* [vesicles][3 count] of all */
   PetscReal *points; /* [vesicles][3][n] on the grids of degree p */
   NearTables tables;
@@ -37,12 +39,19 @@ struct _p_CrossLayer {
   PetscInt nearest[2];
 };
 
-PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, CrossLayer *cross);
+PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, Contact3Law law,
+                                             CrossLayer *cross);
 PETSC_EXTERN PetscErrorCode CrossLayerDestroy(CrossLayer *cross);
 
 /* CrossLayerMeasure - the least gap of the surfaces X[own][3 count]. CrossLayerPlace - the same, and what the surfaces
    do to one another where none overlap. CrossLayerAdd - U[own][3 count] += the velocities by forces F[own][3 count] on
    the other vesicles. Collective. */
+/* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][3 count] += its
+   gradient. CrossLayerAddStiffness - G[own][3 count] += what a change of the surfaces, change[own][3 count], adds to
+   the gradient. Collective. */
+PETSC_EXTERN PetscErrorCode CrossLayerEnergy(CrossLayer cross, PetscReal *energy);
+PETSC_EXTERN PetscErrorCode CrossLayerAddRepulsion(CrossLayer cross, PetscReal G[]);
+PETSC_EXTERN PetscErrorCode CrossLayerAddStiffness(CrossLayer cross, const PetscReal change[], PetscReal G[]);
 PETSC_EXTERN PetscErrorCode CrossLayerMeasure(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerPlace(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerAdd(CrossLayer cross, const PetscReal F[], PetscReal U[]);

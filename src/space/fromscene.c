@@ -37,7 +37,8 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                 .policy = {.adaptive = (PetscBool)(s->time.adapt == ADAPT_ERROR),
                                            .base = s->time.dt,
                                            .tolerance = s->time.adapt_tol,
-                                           .max_step = s->time.adapt_max_step}};
+                                           .max_step = s->time.adapt_max_step},
+                                .repulsion = {.stress = s->repulsion.stress, .range = s->repulsion.range}};
   Vesicle3Setting *material;
   PetscReal *X;
   PetscFunctionBeginUser;

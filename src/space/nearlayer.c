@@ -104,6 +104,7 @@ static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscReal reach, PetscReal 
   PetscInt pairs = 0;
   PetscReal *r2;
   PetscFunctionBeginUser;
+  l->reach = reach;
   PetscCall(PetscMalloc1(b->n, &r2));
   for (PetscInt j = 0; j < b->n; j++) b->distance[j] = PETSC_MAX_REAL;
   *least = PETSC_MAX_REAL;

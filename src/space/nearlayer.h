@@ -33,6 +33,7 @@ typedef struct {
 
 typedef struct {
   NearPatch patch[2];
+  PetscReal reach; /* entries are the pairs of points nearer than this */
   PetscInt entries;
   NearEntry *entry;
 } NearLevel;

@@ -12,6 +12,17 @@ PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* F = C x of all vesicles, with what the motion Q/a0 adds to repulsion; V is work. */
+static PetscErrorCode SpaceForces(Space s, const PetscScalar x[]) {
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->work.F + v * s->size));
+    for (PetscInt k = 0; k < s->size; k++) s->work.V[v * s->size + k] = x[4 * v * s->count + k] / s->vesicle[v]->a0;
+  }
+  if (s->cross) PetscCall(CrossLayerAddStiffness(s->cross, s->work.V, s->work.F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* y = what the rows make of x by U = -M C x. */
 static PetscErrorCode SpaceMult(Mat A, Vec X, Vec Y) {
   Space s;
@@ -21,8 +32,7 @@ static PetscErrorCode SpaceMult(Mat A, Vec X, Vec Y) {
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(Y, &y));
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->work.F + v * s->size));
+  PetscCall(SpaceForces(s, x));
   PetscCall(SpaceMobility(s, s->work.F, s->work.V));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = -s->work.V[k];
   for (PetscInt v = 0; v < s->share.own; v++)
@@ -154,11 +164,10 @@ static PetscErrorCode SpaceVelocities(Space s) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->x, &x));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->work.F + v * s->size));
-    for (PetscInt k = 0; k < s->size; k++) s->work.F[v * s->size + k] += s->vesicle[v]->known[k];
-  }
+  PetscCall(SpaceForces(s, x));
   PetscCall(VecRestoreArrayRead(s->x, &x));
+  for (PetscInt v = 0; v < s->share.own; v++)
+    for (PetscInt k = 0; k < s->size; k++) s->work.F[v * s->size + k] += s->vesicle[v]->known[k];
   PetscCall(SpaceMobility(s, s->work.F, s->work.V));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -46,7 +46,7 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
-  if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, &s->cross));
+  if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, &s->cross));
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,6 +188,20 @@ static PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Known forces of repulsion: those at X*, and those of the way from there to Xhat. */
+static PetscErrorCode SpaceAddContact(Space s) {
+  PetscReal *change = s->work.V, *G = s->work.F;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) {
+    change[k] = s->work.Xhat[k] - s->work.Xstar[k];
+    G[k] = 0;
+  }
+  PetscCall(CrossLayerAddRepulsion(s->cross, G));
+  PetscCall(CrossLayerAddStiffness(s->cross, change, G));
+  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3AddKnown(s->vesicle[v], G + v * s->size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A step of size dt as far as Y, V and x; the state is as it was. */
 static PetscErrorCode SpaceAttempt(Space s, PetscReal dt) {
   const BDF b = SpaceFormula(s, dt);
@@ -202,6 +216,7 @@ static PetscErrorCode SpaceAttempt(Space s, PetscReal dt) {
       const PetscInt at = v * s->size;
       PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->work.Xhat + at, s->work.Xstar + at, s->work.Y + at));
     }
+    if (s->cross) PetscCall(SpaceAddContact(s));
     PetscCall(SpaceSolve(s, pass));
     if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(SpaceIterate(s, b.a0, &moved));
@@ -346,54 +361,4 @@ PetscErrorCode SpaceStep(Space s, PetscReal until) {
   PetscCall(PetscTime(&end));
   s->report.seconds = end - start;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-SpaceNumbers SpaceGetNumbers(Space s) {
-  SpaceNumbers n = {.step = s->state.step,
-                    .past = s->past,
-                    .order = s->order,
-                    .solved = s->state.solved,
-                    .level = s->plan.level,
-                    .t = s->state.t,
-                    .made = s->made.a0};
-  n.dt_last[0] = s->state.dt_last;
-  for (int j = 1; j < BDF_MOST; j++) n.dt_last[j] = s->old[j - 1].dt_last;
-  AgeGetMemory(&s->age, n.age);
-  return n;
-}
-
-void SpaceSetNumbers(Space s, const SpaceNumbers *n) {
-  s->state.step = n->step;
-  s->state.solved = n->solved ? PETSC_TRUE : PETSC_FALSE;
-  s->state.t = n->t;
-  s->state.dt_last = n->dt_last[0];
-  s->past = n->past;
-  s->order = n->order;
-  s->plan.level = n->level;
-  for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = n->dt_last[j];
-  s->made.a0 = n->made;
-  s->age = AgeSetMemory(n->age);
-}
-
-PetscInt SpaceArrays(Space s, SpaceArray array[SPACE_ARRAYS]) {
-  static const char *const groups[] = {"", "/previous", "/previous_1", "/solver"};
-  PetscInt n = 0;
-  for (PetscInt j = 0; j <= BDF_MOST; j++) {
-    const SpaceState made = {.X = s->made.X, .sigma = s->made.sigma}, *q = j == BDF_MOST ? &made
-                                                                           : j           ? &s->old[j - 1]
-                                                                                         : &s->state;
-    const struct {
-      const char *name;
-      PetscInt each;
-      PetscReal *own;
-    } all[] = {{"shape", s->size, q->X}, {"velocity", s->size, q->U}, {"tension", s->count, q->sigma}};
-    if (j == BDF_MOST ? s->made.a0 <= 0 : j > s->past) continue;
-    for (int k = 0; k < 3; k++) {
-      if (j == BDF_MOST && k == 1) continue; /* factors have no velocity */
-      (void)snprintf(array[n].name, sizeof(array[n].name), "%s/vesicle/%s", groups[j], all[k].name);
-      array[n].each = all[k].each;
-      array[n++].own = all[k].own;
-    }
-  }
-  return n;
 }

@@ -23,6 +23,7 @@ typedef struct {
   Flow3 flow;
   const void *context;
   StepPolicy policy;
+  Contact3Law repulsion;
 } SpaceSetting;
 
 /* What the last step did. */
@@ -106,8 +107,8 @@ typedef struct {
 } SpaceArray;
 #define SPACE_ARRAYS (3 * BDF_MOST + 2)
 
-/* SpaceGetNumbers, SpaceSetNumbers - of the present state. SpaceArrays - the arrays that go with the numbers, and how
-   many there are. Not collective. */
+/* SpaceGetNumbers, SpaceSetNumbers - of the present state (spacememory.c).(spacememory.c). SpaceArrays - the arrays
+   that go with the numbers, and how many there are. Not collective. */
 PETSC_EXTERN SpaceNumbers SpaceGetNumbers(Space space);
 PETSC_EXTERN void SpaceSetNumbers(Space space, const SpaceNumbers *numbers);
 PETSC_EXTERN PetscInt SpaceArrays(Space space, SpaceArray array[SPACE_ARRAYS]);

@@ -93,7 +93,8 @@ static PetscErrorCode SpaceRow(void *model, PetscReal last[]) {
   last[SPACE_STEP] = s->state.step;
   last[SPACE_TIME] = s->state.t;
   last[SPACE_DT] = s->report.dt;
-  if (s->cross) PetscCall(CrossLayerMeasure(s->cross, s->state.X));
+  if (s->cross) PetscCall((m->scene->repulsion.stress > 0 ? CrossLayerPlace : CrossLayerMeasure)(s->cross, s->state.X));
+  if (s->cross) PetscCall(CrossLayerEnergy(s->cross, &last[SPACE_CONTACT]));
   last[SPACE_GAP] = s->cross ? s->cross->gap : NAN;
   last[SPACE_ITS] = s->report.its;
   last[SPACE_WALL] = s->report.seconds;

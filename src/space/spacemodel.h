@@ -36,6 +36,7 @@
   COLUMN(NORMAL_SPEED, "normal_speed", WORST)\
   COLUMN(TAIL, "spectrum_tail", WORST)       \
   COLUMN(GAP, "gap", RUN)                    \
+  COLUMN(CONTACT, "energy_contact", RUN)     \
   COLUMN(ITS, "coupled_its", RUN)            \
   COLUMN(WALL, "wall", RUN)
 /* clang-format on */

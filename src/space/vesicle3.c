@@ -118,6 +118,12 @@ PetscErrorCode Vesicle3Linearise(Vesicle3 v, PetscReal a0, const PetscReal Xhat[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode Vesicle3AddKnown(Vesicle3 v, const PetscReal G[]) {
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < v->size; k++) v->known[k] += G[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode Vesicle3Force(Vesicle3 v, const PetscReal x[], PetscReal F[]) {
   PetscFunctionBeginUser;
   PetscCall(DenseProduct(PETSC_FALSE, v->size, 1, 4 * v->count, v->columns, x, F));

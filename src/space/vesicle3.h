@@ -57,6 +57,9 @@ PETSC_EXTERN PetscErrorCode Vesicle3Place(Vesicle3 vesicle, const PetscReal Xsta
 PETSC_EXTERN PetscErrorCode Vesicle3Linearise(Vesicle3 vesicle, PetscReal a0, const PetscReal Xhat[],
                                               const PetscReal Xstar[], const PetscReal Y[]);
 
+/* Vesicle3AddKnown - known += G[size], the gradient of another energy. Not collective. */
+PETSC_EXTERN PetscErrorCode Vesicle3AddKnown(Vesicle3 vesicle, const PetscReal G[]);
+
 /* Vesicle3Force - F[size] = C x, x[4 count]. Vesicle3Velocity - U[size] becomes that of a membrane with this ratio of
    viscosities from what equal ones would make, U := inverse U. Vesicle3Rows - y[4 count] = L U + what the rows have of
    x alone (NULL: nothing). Not collective. */

@@ -21,7 +21,7 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
     all[v * size + along * count] += v * r * one;
   }
   TestCall(SphereCreate(p, &sphere));
-  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, &cross));
+  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, (Contact3Law){0}, &cross));
   TestCall(CrossLayerPlace(cross, all + first * size));
   CHECK(PetscAbsReal(cross->gap - (r - 1.6)) < 1e-2 * r, "degree %d: the gap of spheres %g apart is %.4f", (int)p, r,
         cross->gap);
@@ -37,6 +37,52 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
     CHECK(off < most, "degree %d, spheres %g apart along %c: velocity of the other along %c, relative error %.1e",
           (int)p, r, "xyz"[along], "xyz"[d], off);
   }
+  TestCall(CrossLayerDestroy(&cross));
+  TestCall(SphereDestroy(&sphere));
+}
+
+/* Repulsion of two spheres of radii a and b, distance R, gap g below the range D: the integral of psi over both areas
+   is pi a b K (D - g)^3/(3 R D). Its slope along the line of centers is the force, opposite on both. */
+static void CheckRepulsion(PetscInt p, PetscReal gap) {
+  const PetscInt count = HarmonicsCount(p), size = 3 * count;
+  const PetscReal a = 1, b = 0.6, K = 2, D = 0.3, R = a + b + gap, one = PetscSqrtReal(4 * PETSC_PI), small = 1e-4;
+  const Contact3Law law = {.stress = K, .range = D};
+  PetscMPIInt rank, ranks;
+  Sphere sphere;
+  CrossLayer cross;
+  TestCall(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  const PetscInt first = 2 * rank / ranks, own = 2 * (rank + 1) / ranks - first;
+  PetscReal *all = TestReals(2 * size), *G = TestReals(2 * size), *change = TestReals(2 * size), energy[3],
+            force[2][3] = {{0}};
+  TestCall(SphereCreate(p, &sphere));
+  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, 1, law, &cross));
+  for (int k = 2; k >= 0; k--) { /* the second sphere a little nearer, a little farther, in its place */
+    SurfaceEllipsoid(p, (PetscReal[]){a, a, a}, all);
+    SurfaceEllipsoid(p, (PetscReal[]){b, b, b}, all + size);
+    all[size] += (R + (k == 1 ? small : k == 2 ? -small : 0)) * one;
+    TestCall(CrossLayerPlace(cross, all + first * size));
+    TestCall(CrossLayerEnergy(cross, &energy[k]));
+  }
+  for (PetscInt k = 0; k < 2 * size; k++) G[k] = change[k] = 0;
+  for (PetscInt v = 0; v < own; v++) change[v * size] = first + v ? small * one : 0;
+  TestCall(CrossLayerAddRepulsion(cross, G));
+  for (PetscInt v = 0; v < own; v++) force[0][first + v] = G[v * size] * one;
+  for (PetscInt k = 0; k < 2 * size; k++) G[k] = 0;
+  TestCall(CrossLayerAddStiffness(cross, change, G));
+  for (PetscInt v = 0; v < own; v++) force[1][first + v] = G[v * size] * one;
+  TestSum(3, force[0]);
+  TestSum(3, force[1]);
+  const PetscReal exact = PETSC_PI * a * b * K * PetscPowRealInt(D - gap, 3) / (3 * R * D),
+                  slope = (energy[1] - energy[2]) / (2 * small);
+  CHECK(PetscAbsReal(energy[0] / exact - 1) < 2e-2, "gap %g: energy of repulsion %.6g, exact %.6g", gap, energy[0],
+        exact);
+  CHECK(PetscAbsReal(force[0][1] / slope - 1) < 5e-4, "gap %g: force %.6g, slope of the energy %.6g", gap, force[0][1],
+        slope);
+  CHECK(PetscAbsReal(force[0][0] + force[0][1]) < 1e-12, "gap %g: forces are opposite, %.1e", gap,
+        force[0][0] + force[0][1]);
+  CHECK(force[1][1] > 0 && PetscAbsReal(force[1][0] + force[1][1]) < 1e-12,
+        "gap %g: a motion apart is resisted by %.3g on both", gap, force[1][1]);
   TestCall(CrossLayerDestroy(&cross));
   TestCall(SphereDestroy(&sphere));
 }
@@ -141,6 +187,8 @@ void Facts(void) {
     CheckSpheres(8, 1.7, along, 1e-4);
     CheckSpheres(8, 1.62, along, 1e-4);
   }
+  CheckRepulsion(8, 0.2);
+  CheckRepulsion(8, 0.08);
   CheckStep(1);
   CheckStep(5);
 }

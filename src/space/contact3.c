@@ -1,0 +1,91 @@
+#include "space/contact3.h"
+#include "numerics/blas.h"
+
+/* The finest level on which all pairs of points within the range are known. */
+static const NearLevel *ContactLevel(NearPair pair, PetscReal range) {
+  PetscInt k = pair->levels - 1;
+  while (k > 1 && pair->level[k].reach < range) k--;
+  return k > 0 ? &pair->level[k] : NULL;
+}
+
+static PetscReal NearEntryDistance2(const NearLevel *l, const NearEntry *e) {
+  const NearPatch *a = &l->patch[0], *b = &l->patch[1];
+  PetscReal r2 = 0;
+  for (int q = 0; q < 3; q++) r2 += PetscSqr(a->X[q * a->n + e->i] - b->X[q * b->n + e->j]);
+  return r2;
+}
+
+/* Areas of the points of a patch. */
+static PetscErrorCode ContactAreas(const NearPatch *p, PetscInt count, const PetscReal J[], PetscReal area[]) {
+  PetscFunctionBeginUser;
+  PetscCall(DenseProduct(PETSC_FALSE, p->n, 1, count, p->Y, J, area));
+  for (PetscInt i = 0; i < p->n; i++) area[i] *= p->weight[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const PetscReal J1[], const PetscReal J2[],
+                              Contact3 *c) {
+  const NearLevel *l = ContactLevel(pair, law->range);
+  const PetscReal D = law->range;
+  PetscReal *area[2];
+  PetscInt room = 0;
+  PetscFunctionBeginUser;
+  *c = (Contact3){.level = l};
+  if (!l) PetscFunctionReturn(PETSC_SUCCESS);
+  const NearPatch *a = &l->patch[0], *b = &l->patch[1];
+  PetscCall(PetscMalloc2(a->n, &area[0], b->n, &area[1]));
+  PetscCall(ContactAreas(a, pair->sphere->count, J1, area[0]));
+  PetscCall(ContactAreas(b, pair->sphere->count, J2, area[1]));
+  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance2(l, &l->entry[k]) < D * D;
+  PetscCall(PetscMalloc1(room, &c->entry));
+  for (PetscInt k = 0; k < l->entries; k++) {
+    const NearEntry *e = &l->entry[k];
+    const PetscReal r = PetscSqrtReal(NearEntryDistance2(l, e)),
+                    both = law->stress / (2 * PETSC_PI) * area[0][e->i] * area[1][e->j];
+    if (r >= D) continue;
+    c->energy += both * (1 / r - 1 / D);
+    c->entry[c->entries++] = (NearEntry){
+        .i = e->i, .j = e->j, .a = -both / (r * r * r), .b = 2 * both / (r * r * r * r * r)};
+  }
+  PetscCall(PetscFree2(area[0], area[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Contact3Destroy(Contact3 *c) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(c->entry));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Contact3Add(const Contact3 *c, PetscInt count, const PetscReal *const change[2], PetscReal *const G[2]) {
+  PetscReal *x[2], *g[2];
+  PetscFunctionBeginUser;
+  if (!c->entries) PetscFunctionReturn(PETSC_SUCCESS);
+  const NearPatch *a = &c->level->patch[0], *b = &c->level->patch[1];
+  PetscCall(PetscMalloc2(3 * a->n, &x[0], 3 * b->n, &x[1]));
+  PetscCall(PetscCalloc2(3 * a->n, &g[0], 3 * b->n, &g[1]));
+  for (int side = 0; side < 2 && change; side++) {
+    const NearPatch *p = &c->level->patch[side];
+    PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y, change[side], x[side]));
+  }
+  for (const NearEntry *e = c->entry; e < c->entry + c->entries; e++) {
+    PetscReal d[3], along = 0;
+    for (int q = 0; q < 3; q++) {
+      d[q] = a->X[q * a->n + e->i] - b->X[q * b->n + e->j];
+      if (change) along += e->b * d[q] * (x[0][q * a->n + e->i] - x[1][q * b->n + e->j]);
+    }
+    for (int q = 0; q < 3; q++) {
+      g[0][q * a->n + e->i] += (change ? along : e->a) * d[q];
+      g[1][q * b->n + e->j] -= (change ? along : e->a) * d[q];
+    }
+  }
+  for (int side = 0; side < 2; side++) {
+    const NearPatch *p = &c->level->patch[side];
+    if (G[side])
+      PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){p->Y, p->n, count, p->n},
+                                   (DenseView){g[side], p->n, 3, p->n}, 1, G[side], count));
+  }
+  PetscCall(PetscFree2(x[0], x[1]));
+  PetscCall(PetscFree2(g[0], g[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,29 @@
+/* Repulsion of near surfaces: between areas dA and dA' at a distance r below the range D the energy
+
+       psi(r) dA dA',     psi = K (1 - r/D)/(2 pi r),
+
+   with which parallel planes at a distance z push one another with the stress K (1 - z/D), as membranes of the plane
+   do. Forces are the gradient of the sum over pairs of points on one of the grids of a NearPair, so that the two
+   surfaces' forces are opposite. A step takes the stiffness psi'' along r with it. */
+#pragma once
+#include "space/nearlayer.h"
+
+typedef struct {
+  PetscReal stress, range; /* K (length^2/time^2), 0: none; D (length) */
+} Contact3Law;
+
+typedef struct {
+  const NearLevel *level; /* borrowed; NULL: no pair of points is in range */
+  PetscInt entries;
+  NearEntry *entry; /* a: psi'/r, b: psi''/r^2, times both areas */
+  PetscReal energy;
+} Contact3;
+
+/* Contact3Create - of a pair of surfaces with these coefficients of dA/domega, J1[count] and J2[count].
+   Contact3Add - G[side][3][count] += the gradient of the energy by the coefficients, or (change[side][3][count] not
+   NULL) what a change of the surfaces adds to it. G[side] NULL: not wanted. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const PetscReal J1[],
+                                           const PetscReal J2[], Contact3 *contact);
+PETSC_EXTERN PetscErrorCode Contact3Destroy(Contact3 *contact);
+PETSC_EXTERN PetscErrorCode Contact3Add(const Contact3 *contact, PetscInt count, const PetscReal *const change[2],
+                                        PetscReal *const G[2]);
