@@ -43,9 +43,9 @@ void FreeBodiesRows(Obstacles o, const PetscReal load[], const PetscScalar x[], 
   }
 }
 
-/* A force alike on all markers, and a turn about their mean. */
-void FreeBodyBalance(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal s[3],
-                     PetscScalar F[]) {
+/* A force alike on all markers, and a turn about their mean, by which R^T F becomes s. */
+static void FreeBodyBalance(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal s[3],
+                            PetscScalar F[]) {
   PetscReal mean[2] = {0, 0}, squares = 0, sum[3] = {0, 0, 0};
   MotionSum(center, n, X, F, sum);
   const PetscReal push[2] = {(s[0] - sum[0]) / n, (s[1] - sum[1]) / n};
@@ -66,6 +66,31 @@ void FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
     const PetscReal *own = load + FreeBodyAt(o, b) - 2 * l->n, s[] = {-own[0], -own[1], -own[2]};
     FreeBodyBalance(p.center, LayoutCount(l, b), o->X + 2 * l->start[b], s, F + 2 * LayoutOffset(l, b));
   }
+}
+
+PetscErrorCode FreeBodiesBorder(Obstacles o, PetscInt begin, PetscInt end, PetscReal inertia, const PetscReal mass[],
+                                PetscReal A[]) {
+  const PetscInt first = 2 * o->layout->start[begin], markers = 2 * o->layout->start[end] - first;
+  PetscInt at = markers, n = markers;
+  PetscFunctionBeginUser;
+  for (PetscInt b = begin; b < end; b++) n += o->motion[b].free ? 3 : 0;
+  for (PetscInt k = markers - 1; k >= 0 && n > markers; k--) {
+    PetscCall(PetscArraymove(A + k * n, A + k * markers, markers));
+    PetscCall(PetscArrayzero(A + k * n + markers, n - markers));
+  }
+  PetscCall(PetscArrayzero(A + markers * n, (n - markers) * n));
+  for (PetscInt b = begin; b < end; b++) {
+    const BodyPose p = MotionPose(&o->motion[b], o->at);
+    for (PetscInt j = 0; j < 3 && o->motion[b].free; j++, at++) {
+      const PetscReal unit = FreeBodyUnit(o, b, j);
+      for (PetscInt k = 2 * o->layout->start[b]; k < 2 * o->layout->start[b + 1]; k++) {
+        const PetscReal turn = k % 2 ? o->X[k - 1] - p.center[0] : p.center[1] - o->X[k + 1];
+        A[at * n + k - first] = A[(k - first) * n + at] = unit * (j < 2 ? k % 2 == j : turn);
+      }
+      if (mass) A[at * (n + 1)] = -inertia * PetscSqr(unit) * mass[3 * (o->motion[b].free - 1) + j] / o->ratio[b];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscReal FreeBodiesSpeed(Obstacles o, const PetscScalar x[]) {

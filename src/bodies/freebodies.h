@@ -22,12 +22,22 @@ PETSC_EXTERN PetscErrorCode FreeBodiesCreateVecs(Obstacles obstacles, Vec *force
 PETSC_EXTERN void FreeBodiesRows(Obstacles obstacles, const PetscReal load[], const PetscScalar x[], PetscScalar y[]);
 PETSC_EXTERN PetscErrorCode FreeBodiesShift(Obstacles obstacles, Vec place, Vec from, PetscReal d[]);
 
-/* FreeBodyBalance - F += the rigid part by which R^T F (MotionSum) of one body becomes s[3]. FreeBodiesBalance - F[2w]
-   += the rigid parts by which R^T F of own bodies, where they have been placed, becomes minus the load[3 own free]. Not
-   collective. */
-PETSC_EXTERN void FreeBodyBalance(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal s[3],
-                                  PetscScalar F[]);
+/* FreeBodiesBalance - F[2w] += the rigid parts by which R^T F of own bodies, where they have been placed, becomes minus
+   the load[3 own free]. Not collective. */
 PETSC_EXTERN void FreeBodiesBalance(Obstacles obstacles, const PetscReal load[], PetscScalar F[]);
+
+/* FreeBodiesBorder - A, the dense block of the markers of curves begin .. end - 1, becomes that of F and, behind them,
+   q/unit m of the free bodies among them,
+
+       A F + m R q = r,   unit (R^T F - inertia M q) = unit s,
+
+   with the mass M[3 free] (NULL: 0). A has room for it. FreeBodyUnit - unit of one of the three numbers of a body, by
+   which both parts of the matrix are of one size. Not collective. */
+PETSC_EXTERN PetscErrorCode FreeBodiesBorder(Obstacles obstacles, PetscInt begin, PetscInt end, PetscReal inertia,
+                                             const PetscReal mass[], PetscReal A[]);
+static inline PetscReal FreeBodyUnit(Obstacles o, PetscInt curve, PetscInt number) {
+  return number < 2 ? o->beta : o->beta / ObstacleRadius(o, curve);
+}
 
 /* FreeBodiesSpeed - the largest speed of a marker of own bodies that move with the q of such an array (length/time).
    Not collective. */

@@ -1,9 +1,8 @@
 #include "precondition/obstacleblock.h"
 #include "base/agree.h"
 #include "numerics/blas.h"
-#include "precondition/freeblock.h"
-#include "precondition/obstaclemodes.h"
 #include "numerics/symmetric.h"
+#include "precondition/obstaclemodes.h"
 
 struct _p_ObstacleBlock {
   const FluidSpec *spec; /* borrowed */
@@ -12,12 +11,12 @@ struct _p_ObstacleBlock {
   PetscMPIInt root;      /* the rank that has the factor */
   Age age;               /* of the factor, for the coefficient alpha of H */
   Instant made_at;       /* at which the bodies were where the factor has them */
-  float *inverse;        /* 2W x 2W (symmetric.h), on root; NULL with modes */
+  PetscInt n;            /* 2W + 3 free, F and q of all bodies (freebodies.h) */
+  float *inverse;        /* n x n (symmetric.h), on root; NULL with modes */
   ObstacleModes modes;   /* NULL: dense inverse */
-  FreeBlock free;        /* on root, of bodies that move freely; NULL without */
-  PetscScalar *rates;    /* [3 free] their velocities, work */
-  PetscScalar *all;      /* [2W] work */
-  float *from, *to;      /* [2W] on root: work, what has been found */
+  PetscScalar *own;      /* [2w + 3 own free] work */
+  PetscScalar *all;      /* [n] work */
+  float *from, *to;      /* [n] on root: work, what has been found */
   PetscInt coupled;      /* number of the factor that X and the vesicles' block are of; 0: they know no obstacles */
   float *response;       /* [2M][2W] X, on root; not made unless coupled */
   PetscScalar *force;    /* [2M] of vesicles, work */
@@ -26,7 +25,6 @@ struct _p_ObstacleBlock {
 
 PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *out) {
   const Obstacles o = coupling->bodies->obstacles;
-  const PetscInt n = 2 * o->layout->M;
   ObstacleBlock b;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
@@ -36,12 +34,12 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->obstacles = o;
   b->age = AgeNone();
   b->root = LayoutOwner(coupling->bodies->layout, 0);
-  PetscCall(PetscMalloc2(n, &b->all, 3 * o->free->M, &b->rates));
+  b->n = 2 * o->layout->M + 3 * o->free->M;
+  PetscCall(PetscMalloc2(b->n, &b->all, 2 * o->layout->n + FreeBodiesOwn(o), &b->own));
   if (o->modes) PetscCall(ObstacleModesCreate(spec, coupling, b->root, &b->modes));
   if (o->layout->rank != b->root) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(n, &b->from, n, &b->to));
-  if (o->free->M) PetscCall(FreeBlockCreate(o, &b->free));
-  if (!b->modes) PetscCall(PetscMalloc1(SymmetricSize(n), &b->inverse));
+  PetscCall(PetscMalloc2(b->n, &b->from, b->n, &b->to));
+  if (!b->modes) PetscCall(PetscMalloc1(SymmetricSize(b->n), &b->inverse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,9 +51,8 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscCall(PetscFree2((*block)->from, (*block)->to));
   PetscCall(PetscFree((*block)->response));
   PetscCall(PetscFree2((*block)->force, (*block)->single));
-  PetscCall(FreeBlockDestroy(&(*block)->free));
   PetscCall(VecDestroy(&(*block)->made_at.place));
-  PetscCall(PetscFree2((*block)->all, (*block)->rates));
+  PetscCall(PetscFree2((*block)->all, (*block)->own));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,7 +94,7 @@ static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal A[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block times h^2, on root. */
+/* The block of the markers times h^2, on root. */
 static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
   const Obstacles o = b->obstacles;
   const Layout l = o->layout;
@@ -134,16 +131,17 @@ static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
 /* The whole block's inverse, on root. */
 static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
   const Layout l = b->obstacles->layout;
-  const PetscInt n = 2 * l->M;
+  const InnerFluid inner = b->coupling->mobility->inner;
   const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscBool done = PETSC_TRUE;
   PetscReal *A;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * n, &A));
+  PetscCall(PetscMalloc1(b->n * b->n, &A));
   PetscCall(AssembleObstacles(b, A));
   if (l->rank == b->root) {
-    for (PetscInt k = 0; k < n * n; k++) A[k] *= over;
-    PetscCall(SymmetricInvert(n, A, b->inverse, &done));
+    for (PetscInt k = 0; k < 4 * l->M * l->M; k++) A[k] *= over;
+    PetscCall(FreeBodiesBorder(b->obstacles, 0, l->bodies, b->age.made_for, inner ? inner->mass : NULL, A));
+    PetscCall(SymmetricInvert(b->n, A, b->inverse, &done));
   }
   PetscCall(PetscFree(A));
   PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
@@ -151,19 +149,16 @@ static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
 }
 
 /* y = A^-1 x of the block's approximation, on root. */
-static PetscErrorCode InvertObstacles(void *block, const float x[], float y[]) {
-  const ObstacleBlock b = (ObstacleBlock)block;
+static PetscErrorCode InvertObstacles(ObstacleBlock b, float x[], float y[]) {
   PetscFunctionBeginUser;
   if (b->modes)
     PetscCall(ObstacleModesApply(b->modes, x, y));
   else
-    SymmetricMult(2 * b->obstacles->layout->M, b->inverse, x, y);
+    SymmetricMult(b->n, b->inverse, x, y);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
-  const InnerFluid inner = b->coupling->mobility->inner;
-  PetscBool done = PETSC_TRUE;
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorObstacles", &event));
@@ -174,10 +169,6 @@ static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
     PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
   else
     PetscCall(MakeObstacleInverse(b, failed));
-  if (b->free && !*failed)
-    PetscCall(FreeBlockSetUp(b->free, b->age.made_for, inner ? inner->mass : NULL, InvertObstacles, b, &done));
-  if (b->obstacles->free->M && !*failed)
-    PetscCall(AgreeFlag(b->obstacles->layout->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -269,14 +260,25 @@ PetscBool ObstacleBlockRenewed(ObstacleBlock b) {
   return b->coupled > 0 && b->coupled != b->age.made ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar U[]) {
+/* On root: the numbers of free bodies by their units, or (out) q by unit over m. */
+static void ScaleFreeBodies(ObstacleBlock b, PetscBool out) {
+  const Obstacles o = b->obstacles;
+  for (PetscInt v = 0; v < o->layout->bodies; v++)
+    for (PetscInt j = 0; j < 3 && o->motion[v].free; j++)
+      b->all[2 * o->layout->M + 3 * (o->motion[v].free - 1) + j] *= FreeBodyUnit(o, v, j) / (out ? o->ratio[v] : 1);
+}
+
+PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, const PetscScalar r[], PetscScalar U[]) {
   const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  ObstaclesTurn(b->obstacles, b->obstacles->at, b->made_at, r);
-  PetscCall(LayoutToRank(l, b->root, 2, r, b->all));
-  if (root) DenseSingle(w, b->all, b->from);
+  PetscCall(PetscArraycpy(b->own, r, 2 * l->n + FreeBodiesOwn(b->obstacles)));
+  ObstaclesTurn(b->obstacles, b->obstacles->at, b->made_at, b->own);
+  PetscCall(LayoutToRank(l, b->root, 2, b->own, b->all));
+  PetscCall(LayoutToRank(b->obstacles->free, b->root, 3, b->own + 2 * l->n, b->all + w));
+  if (root) ScaleFreeBodies(b, PETSC_FALSE);
+  if (root) DenseSingle(b->n, b->all, b->from);
   if (ObstacleBlockCoupled(b)) {
     PetscCall(LayoutToRank(vesicles, b->root, 2, U, b->force));
     if (root) {
@@ -287,11 +289,13 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, PetscScalar r[], PetscScalar 
     PetscCall(LayoutFromRank(vesicles, b->root, 2, b->force, U));
   }
   if (root) PetscCall(InvertObstacles(b, b->from, b->to));
-  PetscCall(LayoutToRank(b->obstacles->free, b->root, 3, r + 2 * l->n, b->rates));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* In single precision the rows of free bodies would not hold to rounding; solid has their right-hand sides. */
 PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscScalar solid[]) {
+  const InnerFluid inner = b->coupling->mobility->inner;
+  const PetscInt free = FreeBodiesOwn(b->obstacles), first = 3 * b->obstacles->free->first;
   const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
@@ -301,10 +305,15 @@ PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscSca
     if (root) DenseSingle(m, b->force, b->single);
     if (root) PetscCall(DenseSingleMultAdd(PETSC_FALSE, w, m, -1, b->response, b->single, b->to));
   }
-  for (PetscInt k = 0; k < w && root; k++) b->all[k] = b->to[k];
-  if (b->free) PetscCall(FreeBlockSolve(b->free, b->rates, b->all));
-  PetscCall(LayoutFromRank(l, b->root, 2, b->all, solid));
-  PetscCall(LayoutFromRank(b->obstacles->free, b->root, 3, b->rates, solid + 2 * l->n));
-  ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->at, solid);
+  for (PetscInt k = 0; k < b->n && root; k++) b->all[k] = b->to[k];
+  if (root) ScaleFreeBodies(b, PETSC_TRUE);
+  PetscCall(LayoutFromRank(l, b->root, 2, b->all, b->own));
+  PetscCall(LayoutFromRank(b->obstacles->free, b->root, 3, b->all + w, b->own + 2 * l->n));
+  ObstaclesTurn(b->obstacles, b->made_at, b->obstacles->at, b->own);
+  for (PetscInt k = 0; k < free; k++)
+    solid[2 * l->n + k] = -solid[2 * l->n + k] -
+                          (inner ? b->age.made_for * inner->mass[first + k] * b->own[2 * l->n + k] : 0);
+  FreeBodiesBalance(b->obstacles, solid + 2 * l->n, b->own);
+  PetscCall(PetscArraycpy(solid, b->own, 2 * l->n + free));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

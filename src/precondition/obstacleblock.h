@@ -11,8 +11,12 @@
    With X = A^-1 K, K the obstacles' velocity by forces on the vesicles, the obstacles are eliminated: the vesicles'
    block gets the Schur complement Mob - K^T X, and X carries right-hand sides and forces across.
 
+   Free bodies have their velocities q and rows in it (FreeBodiesBorder). The inertia of the fluid inside, which the
+   near field bounds, is left to the iterations.
+
    One rank, the owner of the first body, has the factor; all ranks make parts of A. */
 #pragma once
+#include "bodies/freebodies.h"
 #include "precondition/age.h"
 #include "precondition/meanmobility.h"
 
@@ -57,8 +61,8 @@ PETSC_EXTERN PetscErrorCode ObstacleBlockCouple(ObstacleBlock block, MeanMobilit
 
 /* ObstacleBlockBegin - A^-1 r of the own obstacles' residuals r[2w + 3 own free], kept in the block; U[2n] -= X^T r of
    the own vesicles. ObstacleBlockEnd - and with the own vesicles' forces F[2n]: F_w = A^-1 r - X F to solid[2w], with
-   the velocities of free bodies behind (freeblock.h); F is not looked at where nothing has been coupled, X = 0.
+   the velocities of free bodies behind; F is not looked at where nothing has been coupled, X = 0. solid comes with r.
    Collective. ObstacleBlockCoupled - whether it has been. Not collective. */
-PETSC_EXTERN PetscErrorCode ObstacleBlockBegin(ObstacleBlock block, PetscScalar r[], PetscScalar U[]);
+PETSC_EXTERN PetscErrorCode ObstacleBlockBegin(ObstacleBlock block, const PetscScalar r[], PetscScalar U[]);
 PETSC_EXTERN PetscBool ObstacleBlockCoupled(ObstacleBlock block);
 PETSC_EXTERN PetscErrorCode ObstacleBlockEnd(ObstacleBlock block, const PetscScalar F[], PetscScalar solid[]);

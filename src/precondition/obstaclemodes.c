@@ -12,9 +12,10 @@
 typedef struct {
   PetscInt like; /* the first of them */
   CurvePoints curve;
-  float *inverse; /* D^-1 (symmetric.h), on root */
-  float *answer;  /* D^-1 Q, [2 points][2n], on root */
-  PetscReal *G;   /* [2 points][2 points], on root */
+  PetscInt numbers; /* 2n, with q of a free body 3 more */
+  float *inverse;   /* D^-1 (symmetric.h), on root */
+  float *answer;    /* D^-1 Q, [2 points][numbers], on root */
+  PetscReal *G;     /* [2 points][2 points], on root */
 } CurveShape;
 
 struct _p_ObstacleModes {
@@ -27,6 +28,7 @@ struct _p_ObstacleModes {
   CurveShape *shape;
   float *K;                      /* (symmetric.h), on root */
   float *amplitude, *correction; /* [modes] work */
+  float *x, *y;                  /* [most numbers of a curve] work */
 };
 
 /* How many points a curve has when one of few markers has `least`. */
@@ -48,6 +50,7 @@ static PetscErrorCode SharePoints(ObstacleModes s) {
 
 PetscErrorCode ObstacleModesCreate(const FluidSpec *spec, Coupling c, PetscMPIInt root, ObstacleModes *out) {
   const PetscInt curves = c->bodies->obstacles->layout->bodies;
+  PetscInt most = 0;
   ObstacleModes s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
@@ -58,7 +61,8 @@ PetscErrorCode ObstacleModesCreate(const FluidSpec *spec, Coupling c, PetscMPIIn
   PetscCall(PetscCalloc3(curves, &s->of, curves + 1, &s->start, curves, &s->shape));
   PetscCall(SharePoints(s));
   const PetscInt n = s->start[curves];
-  PetscCall(PetscMalloc2(n, &s->amplitude, n, &s->correction));
+  for (PetscInt v = 0; v < curves; v++) most = PetscMax(most, 2 * LayoutCount(c->bodies->obstacles->layout, v) + 3);
+  PetscCall(PetscMalloc4(n, &s->amplitude, n, &s->correction, most, &s->x, most, &s->y));
   if (c->bodies->layout->rank == root) PetscCall(PetscMalloc1(SymmetricSize(n), &s->K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,7 +83,7 @@ PetscErrorCode ObstacleModesDestroy(ObstacleModes *modes) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FreeShapes(s));
   PetscCall(PetscFree(s->K));
-  PetscCall(PetscFree2(s->amplitude, s->correction));
+  PetscCall(PetscFree4(s->amplitude, s->correction, s->x, s->y));
   PetscCall(PetscFree3(s->of, s->start, s->shape));
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,12 +93,16 @@ PetscInt ObstacleModesCount(ObstacleModes s) {
   return s->start[s->coupling->bodies->obstacles->layout->bodies];
 }
 
-/* Whether two curves are equal but for their place, and as far from the walls. */
+/* Whether two curves are equal but for their place, and as far from the walls; free ones as heavy, in equal fluid. */
 static PetscBool AreEqualCurves(ObstacleModes s, PetscInt v, PetscInt w) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const Grid g = s->coupling->fluid->grid;
   const PetscReal *X = o->X + 2 * o->layout->start[v], *Y = o->X + 2 * o->layout->start[w];
-  if (LayoutCount(o->layout, v) != LayoutCount(o->layout, w) || o->kind[v].type != o->kind[w].type) return PETSC_FALSE;
+  const PetscInt free[2] = {o->motion[v].free, o->motion[w].free};
+  if (LayoutCount(o->layout, v) != LayoutCount(o->layout, w) || o->kind[v].type != o->kind[w].type ||
+      !free[0] != !free[1])
+    return PETSC_FALSE;
+  if (free[0] && (o->density[free[0] - 1] != o->density[free[1] - 1] || o->ratio[v] != o->ratio[w])) return PETSC_FALSE;
   for (PetscInt k = 0; k < 2 * LayoutCount(o->layout, v); k++) {
     const PetscReal apart = g->wall[k % 2] ? 0 : X[k % 2] - Y[k % 2];
     if (PetscAbsReal(X[k] - Y[k] - apart) > SAME * g->h) return PETSC_FALSE;
@@ -112,35 +120,40 @@ static void FindShapes(ObstacleModes s) {
   }
 }
 
-/* D of a curve, [2n][2n], on root. */
-static PetscErrorCode AssembleCurve(ObstacleModes s, MeanMobility mobility, PetscInt v, PetscReal D[]) {
+/* D of a curve, on root. */
+static PetscErrorCode AssembleCurve(ObstacleModes s, MeanMobility mobility, PetscReal alpha, PetscInt v,
+                                    PetscReal D[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const Layout l = o->layout;
   const PetscInt n = 2 * LayoutCount(l, v);
   const MarkerRange own = {o->all->M - l->M + l->start[v], n / 2};
   const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
+  const InnerFluid inner = s->coupling->mobility->inner;
   PetscFunctionBeginUser;
   PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
   for (PetscInt k = 0; k < n * n; k++) D[k] /= h2;
   ObstaclesBlock(o, v, 1, n, D);
+  PetscCall(FreeBodiesBorder(o, v, v + 1, alpha, inner ? inner->mass : NULL, D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* D^-1, D^-1 Q and G of a shape from D, on root. */
 static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool *done) {
-  const PetscInt n = 2 * q->curve.n, m = 2 * q->curve.points;
+  const PetscInt n = q->numbers, m = 2 * q->curve.points, markers = q->curve.n;
   float *single;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(SymmetricSize(n), &q->inverse, m * n, &q->answer, m * m, &q->G));
-  PetscCall(PetscMalloc1(n, &single));
+  PetscCall(PetscCalloc1(n, &single));
   PetscCall(SymmetricInvert(n, D, q->inverse, done));
   for (PetscInt j = 0; j < m && *done; j++) {
     float *answer = q->answer + j * n;
-    for (PetscInt k = 0; k < n; k++) single[k] = k % 2 == j % 2 ? (float)q->curve.to_markers[j / 2 * n / 2 + k / 2] : 0;
+    for (PetscInt k = 0; k < 2 * markers; k++)
+      single[k] = k % 2 == j % 2 ? (float)q->curve.to_markers[j / 2 * markers + k / 2] : 0;
     SymmetricMult(n, q->inverse, single, answer);
     for (PetscInt i = 0; i < m; i++) {
       q->G[j * m + i] = 0;
-      for (PetscInt k = i % 2; k < n; k += 2) q->G[j * m + i] += q->curve.to_markers[i / 2 * n / 2 + k / 2] * answer[k];
+      for (PetscInt k = i % 2; k < 2 * markers; k += 2)
+        q->G[j * m + i] += q->curve.to_markers[i / 2 * markers + k / 2] * answer[k];
     }
   }
   PetscCall(PetscFree(single));
@@ -163,8 +176,9 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
     PetscBool good = PETSC_TRUE;
     PetscCall(CurvePointsCreate(o->kind[q->like].type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE, n,
                                 (s->start[q->like + 1] - s->start[q->like]) / 2, &q->curve));
-    PetscCall(PetscMalloc1(4 * n * n, &D));
-    PetscCall(AssembleCurve(s, mobility, q->like, D));
+    q->numbers = 2 * n + (o->motion[q->like].free ? 3 : 0);
+    PetscCall(PetscMalloc1(q->numbers * q->numbers, &D));
+    PetscCall(AssembleCurve(s, mobility, alpha, q->like, D));
     if (o->layout->rank == s->root) PetscCall(InvertCurve(q, D, &good));
     if (!good) *done = PETSC_FALSE;
     PetscCall(PetscFree(D));
@@ -257,21 +271,33 @@ PetscErrorCode ObstacleModesSetUp(ObstacleModes s, PetscReal alpha, PetscBool *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstacleModesApply(ObstacleModes s, const float x[], float y[]) {
+/* Copy the numbers of a curve out of those of all, or (back) into them. */
+static void CopyCurve(ObstacleModes s, PetscInt v, PetscBool back, float all[], float one[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const PetscInt n = 2 * LayoutCount(o->layout, v), free = o->motion[v].free ? 3 : 0;
+  float *markers = all + 2 * o->layout->start[v], *q = all + 2 * o->layout->M + 3 * (o->motion[v].free - 1);
+  (void)PetscArraycpy(back ? markers : one, back ? one : markers, n);
+  (void)PetscArraycpy(back ? q : one + n, back ? one + n : q, free);
+}
+
+PetscErrorCode ObstacleModesApply(ObstacleModes s, float x[], float y[]) {
   const Layout l = s->coupling->bodies->obstacles->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(s->amplitude, ObstacleModesCount(s)));
   for (PetscInt v = 0; v < l->bodies; v++) {
     const CurveShape *q = &s->shape[s->of[v]];
-    const PetscInt n = 2 * q->curve.n, at = 2 * l->start[v];
-    SymmetricMult(n, q->inverse, x + at, y + at);
-    PetscCall(DenseSingleMultAdd(PETSC_TRUE, n, 2 * q->curve.points, 1, q->answer, x + at, s->amplitude + s->start[v]));
+    CopyCurve(s, v, PETSC_FALSE, x, s->x);
+    PetscCall(DenseSingleMultAdd(PETSC_TRUE, q->numbers, 2 * q->curve.points, 1, q->answer, s->x,
+                                 s->amplitude + s->start[v]));
   }
   SymmetricMult(ObstacleModesCount(s), s->K, s->amplitude, s->correction);
   for (PetscInt v = 0; v < l->bodies; v++) {
     const CurveShape *q = &s->shape[s->of[v]];
-    PetscCall(DenseSingleMultAdd(PETSC_FALSE, 2 * q->curve.n, 2 * q->curve.points, -1, q->answer,
-                                 s->correction + s->start[v], y + 2 * l->start[v]));
+    CopyCurve(s, v, PETSC_FALSE, x, s->x);
+    SymmetricMult(q->numbers, q->inverse, s->x, s->y);
+    PetscCall(DenseSingleMultAdd(PETSC_FALSE, q->numbers, 2 * q->curve.points, -1, q->answer,
+                                 s->correction + s->start[v], s->y));
+    CopyCurve(s, v, PETSC_TRUE, y, s->y);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,6 +7,7 @@
        A ~ D + Q M Q^T,     A^-1 = D^-1 - D^-1 Q K Q^T D^-1,     K = (I + M G)^-1 M,     G = Q^T D^-1 Q.
    The matrices are in single precision on one rank, root; all ranks make parts of D and M. */
 #pragma once
+#include "bodies/freebodies.h"
 #include "precondition/meanmobility.h"
 
 #define OBSTACLE_MODES 3000 /* at most, of all curves: K is dense */
@@ -23,6 +24,7 @@ PETSC_EXTERN PetscErrorCode ObstacleModesDestroy(ObstacleModes *modes);
    when a matrix is singular. Collective. */
 PETSC_EXTERN PetscErrorCode ObstacleModesSetUp(ObstacleModes modes, PetscReal alpha, PetscBool *failed);
 
-/* ObstacleModesApply - y = A^-1 x, [2W] each, on root. Not collective. ObstacleModesCount - how many there are. */
-PETSC_EXTERN PetscErrorCode ObstacleModesApply(ObstacleModes modes, const float x[], float y[]);
+/* ObstacleModesApply - y = A^-1 x, [2W + 3 free] each, on root. Not collective. ObstacleModesCount - how many there
+ * are. */
+PETSC_EXTERN PetscErrorCode ObstacleModesApply(ObstacleModes modes, float x[], float y[]);
 PETSC_EXTERN PetscInt ObstacleModesCount(ObstacleModes modes);
