@@ -6,9 +6,10 @@
 
        K Y + k,      K symmetric.
 
-   Arrays X, V and F are the own parts [2n] of marker vectors, lengths squared over time squared times a length a marker
-   (length^3/time^2). Each operation adds its answer to what the array has. An operation is NULL where a force has
-   nothing of it. */
+   Arrays X, V and F are the own parts [2n] of marker vectors of the vesicles; V, and F with V or k, of all bodies: what
+   is on the markers of obstacles counts for free bodies. Forces are lengths squared over time squared times a length a
+   marker (length^3/time^2). Each operation adds its answer to what the array has. An operation is NULL where a force
+   has nothing of it. */
 #pragma once
 #include "bodies/bodies.h"
 #include "fluid/grid/grid.h"
@@ -37,7 +38,7 @@ typedef struct {
   /* E[vesicles] += the energies of the own vesicles (length^4/time^2) */
   PetscErrorCode (*energy)(void *, Instant at, const PetscScalar X[], PetscReal E[]);
   /* sum += SUM of the force's x component times the period by which a seam of the box separates the force from its
-     counterforce, at markers x, where it is placed at X*[2M]; on every rank */
+     counterforce, at markers x of all bodies, where it is placed at X*[2(M + W)]; on every rank */
   PetscErrorCode (*seams)(void *, const PetscReal Xstar[], const PetscScalar x[], PetscReal *sum);
   PetscErrorCode (*destroy)(void *);
 } Force;

@@ -15,56 +15,57 @@ PetscErrorCode FreeBodiesCreateVecs(Obstacles o, Vec *force, Vec *place) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FreeBodiesShift(Obstacles o, Vec place, Vec from, PetscReal d[]) {
-  const PetscScalar *x, *y;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(place, &x));
-  PetscCall(VecGetArrayRead(from, &y));
-  for (PetscInt k = 0; k < FreeBodiesOwn(o); k++) d[k] = x[3 * o->free->first + k] - y[3 * o->free->first + k];
-  PetscCall(VecRestoreArrayRead(from, &y));
-  PetscCall(VecRestoreArrayRead(place, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* U += alpha R q at the markers of one own body. */
+static void FreeBodyCarry(Obstacles o, PetscInt b, PetscReal alpha, const PetscScalar q[3], PetscScalar U[]) {
+  const PetscInt n = 2 * LayoutCount(o->layout, b);
+  const BodyPose p = MotionPose(&o->motion[b], o->at);
+  const PetscReal *X = o->X + 2 * o->layout->start[b];
+  PetscScalar *u = U + 2 * LayoutOffset(o->layout, b);
+  for (PetscInt k = 0; k < n; k += 2) {
+    u[k] += alpha * (q[0] - q[2] * (X[k + 1] - p.center[1]));
+    u[k + 1] += alpha * (q[1] + q[2] * (X[k] - p.center[0]));
+  }
 }
 
-void FreeBodiesRows(Obstacles o, const PetscReal load[], const PetscScalar x[], PetscScalar y[]) {
+void FreeBodiesCarry(Obstacles o, PetscReal alpha, const PetscReal ratio[], const PetscScalar q[], PetscScalar U[]) {
+  const PetscScalar *own = q - 2 * o->layout->n;
+  for (PetscInt b = o->layout->own; b < o->layout->end; b++)
+    if (o->motion[b].free) FreeBodyCarry(o, b, ratio ? alpha * ratio[b] : alpha, own + FreeBodyAt(o, b), U);
+}
+
+void FreeBodiesShift(Obstacles o, Vec place, PetscScalar X[]) {
+  for (PetscInt b = o->layout->own; b < o->layout->end; b++) {
+    const BodyPose from = MotionPose(&o->motion[b], o->at), to = MotionPose(&o->motion[b], (Instant){.place = place});
+    const PetscScalar way[] = {to.center[0] - from.center[0], to.center[1] - from.center[1], to.angle - from.angle};
+    if (o->motion[b].free) FreeBodyCarry(o, b, 1, way, X);
+  }
+}
+
+void FreeBodiesSum(Obstacles o, const PetscScalar F[], PetscScalar sum[]) {
   const Layout l = o->layout;
-  for (PetscInt k = 0; k < FreeBodiesOwn(o); k++) y[2 * l->n + k] = load ? load[k] : 0;
   for (PetscInt b = l->own; b < l->end; b++) {
-    if (!o->motion[b].free) continue;
     const BodyPose p = MotionPose(&o->motion[b], o->at);
-    const PetscReal *X = o->X + 2 * l->start[b];
-    const PetscScalar *q = x + FreeBodyAt(o, b);
-    PetscScalar *u = y + 2 * LayoutOffset(l, b);
-    MotionSum(p.center, LayoutCount(l, b), X, x + 2 * LayoutOffset(l, b), y + FreeBodyAt(o, b));
-    for (PetscInt k = 0; k < 2 * LayoutCount(l, b); k += 2) {
-      u[k] += o->ratio[b] * (q[0] - q[2] * (X[k + 1] - p.center[1]));
-      u[k + 1] += o->ratio[b] * (q[1] + q[2] * (X[k] - p.center[0]));
-    }
+    if (!o->motion[b].free) continue;
+    MotionSum(p.center, LayoutCount(l, b), o->X + 2 * l->start[b], F + 2 * LayoutOffset(l, b),
+              sum + FreeBodyAt(o, b) - 2 * l->n);
   }
 }
 
-/* A force alike on all markers, and a turn about their mean, by which R^T F becomes s. */
-static void FreeBodyBalance(const PetscReal center[2], PetscInt n, const PetscReal X[], const PetscReal s[3],
-                            PetscScalar F[]) {
-  PetscReal mean[2] = {0, 0}, squares = 0, sum[3] = {0, 0, 0};
-  MotionSum(center, n, X, F, sum);
-  const PetscReal push[2] = {(s[0] - sum[0]) / n, (s[1] - sum[1]) / n};
-  for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += (X[k] - center[k % 2]) / n;
-  for (PetscInt k = 0; k < 2 * n; k++) squares += PetscSqr(X[k] - center[k % 2] - mean[k % 2]);
-  const PetscReal turn = (s[2] - sum[2] - n * (mean[0] * push[1] - mean[1] * push[0])) / squares;
-  for (PetscInt k = 0; k < 2 * n; k += 2) {
-    F[k] += push[0] - turn * (X[k + 1] - center[1] - mean[1]);
-    F[k + 1] += push[1] + turn * (X[k] - center[0] - mean[0]);
-  }
-}
-
+/* A force alike on all markers, and a turn about their mean. */
 void FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++) {
+    const PetscInt n = LayoutCount(l, b);
+    const PetscReal *X = o->X + 2 * l->start[b], *own = load + FreeBodyAt(o, b) - 2 * l->n;
     const BodyPose p = MotionPose(&o->motion[b], o->at);
+    PetscReal mean[2] = {0, 0}, squares = 0;
     if (!o->motion[b].free) continue;
-    const PetscReal *own = load + FreeBodyAt(o, b) - 2 * l->n, s[] = {-own[0], -own[1], -own[2]};
-    FreeBodyBalance(p.center, LayoutCount(l, b), o->X + 2 * l->start[b], s, F + 2 * LayoutOffset(l, b));
+    PetscReal sum[3] = {own[0], own[1], own[2]};
+    MotionSum(p.center, n, X, F + 2 * LayoutOffset(l, b), sum);
+    for (PetscInt k = 0; k < 2 * n; k++) mean[k % 2] += (X[k] - p.center[k % 2]) / n;
+    for (PetscInt k = 0; k < 2 * n; k++) squares += PetscSqr(X[k] - p.center[k % 2] - mean[k % 2]);
+    const PetscReal turn = (mean[0] * sum[1] - mean[1] * sum[0] - sum[2]) / squares;
+    FreeBodyCarry(o, b, 1, (PetscScalar[]){turn * mean[1] - sum[0] / n, -turn * mean[0] - sum[1] / n, turn}, F);
   }
 }
 
@@ -93,14 +94,18 @@ PetscErrorCode FreeBodiesBorder(Obstacles o, PetscInt begin, PetscInt end, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal FreeBodiesSpeed(Obstacles o, const PetscScalar x[]) {
-  PetscReal speed = 0;
-  for (PetscInt b = o->layout->own; b < o->layout->end; b++) {
+PetscErrorCode FreeBodiesFarthest(Obstacles o, Vec way, PetscReal *farthest) {
+  const PetscScalar *all;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(way, &all));
+  for (PetscInt b = 0; b < o->layout->bodies; b++) {
+    const PetscScalar *one = all + 3 * (o->motion[b].free - 1);
     if (!o->motion[b].free) continue;
-    const PetscScalar *q = x + FreeBodyAt(o, b);
-    speed = PetscMax(speed, PetscHypotReal(q[0], q[1]) + PetscAbsReal(q[2]) * ObstacleRadius(o, b));
+    const PetscReal turn = o->motion[b].turned ? PetscAbsReal(one[2]) * ObstacleReach(o, b) : 0;
+    *farthest = PetscMax(*farthest, PetscHypotReal(one[0], one[1]) + turn);
   }
-  return speed;
+  PetscCall(VecRestoreArrayRead(way, &all));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FreeBodiesRates(Obstacles o, Vec force, PetscReal q[]) {
@@ -110,16 +115,6 @@ PetscErrorCode FreeBodiesRates(Obstacles o, Vec force, PetscReal q[]) {
   PetscCall(LayoutGather(o->free, 3, x + 2 * o->layout->n, q));
   PetscCall(VecRestoreArrayRead(force, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A body's F turns with it to a new place; its sum stays. */
-static void FreeBodyTurn(Obstacles o, PetscInt b, Instant to, PetscScalar F[]) {
-  const PetscInt n = LayoutCount(o->layout, b);
-  PetscReal lost[2] = {0, 0};
-  for (PetscInt k = 0; k < 2 * n; k++) lost[k % 2] += F[k];
-  MotionTurn(&o->motion[b], o->at, to, n, F);
-  for (PetscInt k = 0; k < 2 * n; k++) lost[k % 2] -= F[k];
-  for (PetscInt k = 0; k < 2 * n; k++) F[k] += lost[k % 2] / n;
 }
 
 PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal time, Vec place) {
@@ -135,13 +130,21 @@ PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal time, Vec place)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The sum of a body's F stays. */
 PetscErrorCode FreeBodiesTurn(Obstacles o, Vec place, Vec force) {
   PetscScalar *y;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(force, &y));
-  for (PetscInt b = o->layout->own; b < o->layout->end; b++)
-    if (o->motion[b].turned && o->motion[b].free)
-      FreeBodyTurn(o, b, (Instant){.place = place}, y + 2 * LayoutOffset(o->layout, b));
+  for (PetscInt b = o->layout->own; b < o->layout->end; b++) {
+    const PetscInt n = LayoutCount(o->layout, b);
+    PetscScalar *F = y + 2 * LayoutOffset(o->layout, b);
+    PetscReal lost[2] = {0, 0};
+    if (!o->motion[b].free) continue;
+    for (PetscInt k = 0; k < 2 * n; k++) lost[k % 2] += F[k];
+    MotionTurn(&o->motion[b], o->at, (Instant){.place = place}, n, F);
+    for (PetscInt k = 0; k < 2 * n; k++) lost[k % 2] -= F[k];
+    for (PetscInt k = 0; k < 2 * n && o->motion[b].turned; k++) F[k] += lost[k % 2] / n;
+  }
   PetscCall(VecRestoreArray(force, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

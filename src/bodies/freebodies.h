@@ -17,10 +17,13 @@
    Collective. */
 PETSC_EXTERN PetscErrorCode FreeBodiesCreateVecs(Obstacles obstacles, Vec *force, Vec *place);
 
-/* FreeBodiesRows - y += m R q and = R^T F + load[3 own free] (NULL: 0). FreeBodiesShift - d[3 own free] = place - from,
-   of own bodies. Not collective. */
-PETSC_EXTERN void FreeBodiesRows(Obstacles obstacles, const PetscReal load[], const PetscScalar x[], PetscScalar y[]);
-PETSC_EXTERN PetscErrorCode FreeBodiesShift(Obstacles obstacles, Vec place, Vec from, PetscReal d[]);
+/* FreeBodiesCarry - U[2w] += alpha R q, of q[3 own free], with ratio[curves] (NULL: 1) alpha ratio R q. FreeBodiesShift
+   - X[2w] += how far a place is from where bodies have been placed, to first order. FreeBodiesSum - sum[3 own free] +=
+   R^T F. Not collective. */
+PETSC_EXTERN void FreeBodiesCarry(Obstacles obstacles, PetscReal alpha, const PetscReal ratio[], const PetscScalar q[],
+                                  PetscScalar U[]);
+PETSC_EXTERN void FreeBodiesShift(Obstacles obstacles, Vec place, PetscScalar X[]);
+PETSC_EXTERN void FreeBodiesSum(Obstacles obstacles, const PetscScalar F[], PetscScalar sum[]);
 
 /* FreeBodiesBalance - F[2w] += the rigid parts by which R^T F of own bodies, where they have been placed, becomes minus
    the load[3 own free]. Not collective. */
@@ -39,9 +42,9 @@ static inline PetscReal FreeBodyUnit(Obstacles o, PetscInt curve, PetscInt numbe
   return number < 2 ? o->beta : o->beta / ObstacleRadius(o, curve);
 }
 
-/* FreeBodiesSpeed - the largest speed of a marker of own bodies that move with the q of such an array (length/time).
-   Not collective. */
-PETSC_EXTERN PetscReal FreeBodiesSpeed(Obstacles obstacles, const PetscScalar x[]);
+/* FreeBodiesFarthest - raises `farthest` to the largest way of a marker of all bodies whose places change by way[3
+   free], or speed. Not collective. */
+PETSC_EXTERN PetscErrorCode FreeBodiesFarthest(Obstacles obstacles, Vec way, PetscReal *farthest);
 
 /* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += time q. FreeBodiesTurn -
    the force turns with the bodies from where they have been placed to this place. Collective. */

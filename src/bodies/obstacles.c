@@ -224,45 +224,40 @@ PetscErrorCode ObstaclesCheck(Obstacles o, Scene scene, Instant at, char message
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Half the width of a curve, area over half its length, and how far its markers are from its center. */
-static void ObstacleExtent(Obstacles o, PetscInt b, PetscReal *half, PetscReal *reach) {
+PetscReal ObstacleReach(Obstacles o, PetscInt b) {
+  const PetscReal *center = o->motion[b].center;
+  PetscReal reach = 0;
+  for (PetscInt k = o->layout->start[b]; k < o->layout->start[b + 1]; k++)
+    reach = PetscMax(reach, PetscHypotReal(o->rest[2 * k] - center[0], o->rest[2 * k + 1] - center[1]));
+  return reach;
+}
+
+/* Half the width of a curve, area over half its length. */
+static PetscReal ObstacleHalfWidth(Obstacles o, PetscInt b) {
   const PetscInt n = LayoutCount(o->layout, b);
-  const PetscReal *X = o->rest + 2 * o->layout->start[b], *center = o->motion[b].center;
+  const PetscReal *X = o->rest + 2 * o->layout->start[b];
   PetscReal area = 0, length = 0;
-  *reach = 0;
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal *A = X + 2 * k, *B = X + 2 * ((k + 1) % n);
     area += 0.5 * (A[0] * B[1] - B[0] * A[1]);
     length += PetscHypotReal(B[0] - A[0], B[1] - A[1]);
-    *reach = PetscMax(*reach, PetscHypotReal(A[0] - center[0], A[1] - center[1]));
   }
-  *half = 2 * area / length;
+  return 2 * area / length;
 }
 
 PetscErrorCode ObstaclesCheckStride(Obstacles o, Instant from, Instant to, char message[PETVES_MAX_MESSAGE]) {
-  PetscReal half, reach;
   PetscFunctionBeginUser;
   message[0] = 0;
   if (o->all->bodies == 1) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < o->layout->bodies && !*message; b++) {
     if (!o->motion[b].carried) continue;
-    ObstacleExtent(o, b, &half, &reach);
-    const PetscReal stride = MotionStride(&o->motion[b], from, to, reach);
+    const PetscReal half = ObstacleHalfWidth(o, b), stride = MotionStride(&o->motion[b], from, to, ObstacleReach(o, b));
     if (stride > half)
       PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
                               "obstacle %" PetscInt_FMT " would go by %.3g in one step, more than half its width, %.3g",
                               b + 1, (double)stride, (double)half));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscReal ObstaclesStride(Obstacles o, Instant from, Instant to) {
-  PetscReal half, reach, way = 0;
-  for (PetscInt b = 0; b < o->layout->bodies; b++) {
-    ObstacleExtent(o, b, &half, &reach);
-    way = PetscMax(way, MotionStride(&o->motion[b], from, to, reach));
-  }
-  return way;
 }
 
 void ObstaclesRows(Obstacles o, const PetscScalar F[], PetscScalar y[]) {

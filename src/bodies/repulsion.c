@@ -7,7 +7,7 @@ static PetscReal RepulsionReach(const SceneRepulsion *law) {
   return law->range + (law->adhesion > 0 ? law->band : 0);
 }
 
-/* SUM weight normal.x, x[2M]. */
+/* SUM weight normal.x, x[2(M + W)]. */
 static PetscReal SpringStretch(const Spring *s, const PetscScalar x[]) {
   PetscReal along = 0;
   for (PetscInt i = 0; i < s->n; i++)
@@ -15,8 +15,8 @@ static PetscReal SpringStretch(const Spring *s, const PetscScalar x[]) {
   return along;
 }
 
-/* The law on a length `size` of membrane, into a spring whose geometry is known; X[2M]. With P = p size the force is
-   P + stiffness (distance - SUM weight normal.(x - X)) below D. */
+/* The law on a length `size` of membrane, into a spring whose geometry is known; X[2(M + W)]. With P = p size the force
+   is P + stiffness (distance - SUM weight normal.(x - X)) below D. */
 static void SpringSetLaw(const SceneRepulsion *law, PetscReal size, const PetscReal X[], Spring *s) {
   const PetscReal x = (s->distance - law->range) / law->band;
   const PetscReal well = law->adhesion * size; /* depth of it */
@@ -30,35 +30,20 @@ static void SpringSetLaw(const SceneRepulsion *law, PetscReal size, const PetscR
   }
 }
 
-/* The part of a spring of an obstacle's marker, on the side of the point (0) or of the edge (1): none, unless the
-   obstacle moves freely. */
-static void SpringAddBody(Repulsion r, Instant at, PetscInt marker, int side, PetscReal weight, const PetscReal X[],
-                          Spring *s) {
-  const BodyMotion *m = &r->bodies->obstacles->motion[LayoutBody(r->bodies->layout, marker) - r->bodies->vesicles];
-  const BodyPose p = MotionPose(m, at);
-  const PetscReal *n = s->normal, x = X[2 * marker], y = X[2 * marker + 1];
-  if (!m->free) return;
-  s->body[side] = m->free;
-  for (int c = 0; c < 2; c++) s->pull[side][c] += weight * n[c];
-  s->pull[side][2] += weight * ((x - p.center[0]) * n[1] - (y - p.center[1]) * n[0]);
-  s->beyond += weight * x;
+/* Whether contact moves a body: not an obstacle unless it moves freely. */
+static PetscBool RepulsionMoves(Repulsion r, PetscInt body) {
+  return body < r->bodies->vesicles || r->bodies->obstacles->motion[body - r->bodies->vesicles].free;
 }
 
-static PetscBool SpringHasBody(const Spring *s) {
-  return s->body[0] || s->body[1];
-}
-
-/* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. What
-   is of an obstacle stays where it is, unless it moves freely. */
-static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const CurveContact *c, Spring *s) {
+/* A marker and the edge nearest to it: half of what is between two membranes, as markers of both look for edges. */
+static void SpringSetEdge(Repulsion r, const PetscReal X[], const CurveContact *c, Spring *s) {
+  const PetscInt vesicles = r->bodies->vesicles, vesicle = c->curve[c->curve[0] < vesicles ? 0 : 1];
   const PetscInt marker[3] = {c->point, c->edge[0], c->edge[1]};
   const PetscReal weight[3] = {1, c->at - 1, -c->at};
   *s = (Spring){.normal = {c->normal[0], c->normal[1]}, .distance = c->distance};
+  s->vesicle = vesicle < vesicles ? vesicle : -1;
   for (int k = 0; k < 3; k++) {
-    if (marker[k] >= r->membrane->layout->M) {
-      SpringAddBody(r, at, marker[k], k > 0, weight[k], X, s);
-      continue;
-    }
+    if (!RepulsionMoves(r, c->curve[k > 0])) continue;
     s->marker[s->n] = marker[k];
     s->weight[s->n++] = weight[k];
   }
@@ -68,22 +53,21 @@ static void SpringSetEdge(Repulsion r, Instant at, const PetscReal X[], const Cu
 }
 
 /* Markers of vesicles and free bodies near walls; room for 4 a marker. */
-static PetscInt FindWallSprings(Repulsion r, Instant at, const PetscReal X[], Spring spring[]) {
+static PetscInt FindWallSprings(Repulsion r, const PetscReal X[], Spring spring[]) {
   const Grid g = r->grid;
   const Layout l = r->bodies->layout;
-  const PetscInt vesicles = r->bodies->vesicles;
   PetscInt count = 0;
   for (PetscInt v = 0; v < l->bodies; v++) {
-    if (v >= vesicles && !r->bodies->obstacles->motion[v - vesicles].free) continue;
+    if (!RepulsionMoves(r, v)) continue;
     for (PetscInt k = l->start[v]; k < l->start[v + 1]; k++)
       for (int side = 0; side < 4; side++) {
         const int d = side / 2;
         const PetscReal sign = side % 2 ? -1 : 1;
         const PetscReal distance = sign * (X[2 * k + d] - (side % 2 ? g->hi[d] : g->lo[d]));
         if (!g->wall[d] || g->free || distance >= RepulsionReach(&r->law)) continue;
-        spring[count] = (Spring){.n = v < vesicles, .marker = {k}, .weight = {1}, .distance = distance};
+        spring[count] = (Spring){.n = 1, .marker = {k}, .weight = {1}, .distance = distance};
+        spring[count].vesicle = v < r->bodies->vesicles ? v : -1;
         spring[count].normal[d] = sign;
-        if (v >= vesicles) SpringAddBody(r, at, k, 0, 1, X, &spring[count]);
         SpringSetLaw(&r->law, r->bodies->ds[v], X, &spring[count++]);
       }
   }
@@ -91,7 +75,7 @@ static PetscInt FindWallSprings(Repulsion r, Instant at, const PetscReal X[], Sp
 }
 
 /* The springs at the curves X[2(M + W)]; to be freed. */
-static PetscErrorCode FindSprings(Repulsion r, Instant at, const PetscReal X[], PetscInt *count, Spring **springs) {
+static PetscErrorCode FindSprings(Repulsion r, const PetscReal X[], PetscInt *count, Spring **springs) {
   const Grid g = r->grid;
   const Layout all = r->bodies->layout;
   const Obstacles o = r->bodies->obstacles;
@@ -104,9 +88,9 @@ static PetscErrorCode FindSprings(Repulsion r, Instant at, const PetscReal X[], 
   const CurveSet set = {all->bodies, moving, all->start, r->bodies->kind, X, period, PETSC_FALSE};
   PetscCall(CurveContacts(&set, RepulsionReach(&r->law), r->bodies->vesicles, r->bodies->ds, &n, &contact));
   PetscCall(PetscMalloc1(n + 4 * all->M, springs));
-  for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, at, X, &contact[k], &(*springs)[k]);
+  for (PetscInt k = 0; k < n; k++) SpringSetEdge(r, X, &contact[k], &(*springs)[k]);
   PetscCall(PetscFree(contact));
-  *count = n + FindWallSprings(r, at, X, *springs + n);
+  *count = n + FindWallSprings(r, X, *springs + n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,7 +99,7 @@ static PetscErrorCode RepulsionPlace(void *context, Instant at, const PetscReal 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(r->spring));
   PetscCall(BodiesSee(r->bodies, at, X, r->all));
-  PetscCall(FindSprings(r, at, r->all, &r->count, &r->spring));
+  PetscCall(FindSprings(r, r->all, &r->count, &r->spring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,7 +114,7 @@ static void SpringPull(const Spring *s, Layout l, PetscReal force, PetscScalar y
 
 static PetscErrorCode RepulsionRate(void *context, PetscReal alpha, const PetscScalar x[], PetscScalar y[]) {
   const Repulsion r = (Repulsion)context;
-  const Layout l = r->membrane->layout;
+  const Layout l = r->bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, x, r->all));
   for (PetscInt k = 0; k < r->count; k++) {
@@ -143,49 +127,20 @@ static PetscErrorCode RepulsionRate(void *context, PetscReal alpha, const PetscS
 static PetscErrorCode RepulsionKnown(void *context, PetscReal alpha, const PetscScalar X[], PetscScalar F[]) {
   const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < r->count; k++) SpringPull(&r->spring[k], r->membrane->layout, -alpha * r->spring[k].push, F);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RepulsionBodies(Forces forces, PetscBool known, PetscReal alpha, const PetscScalar V[],
-                               const PetscScalar q[], PetscScalar F[], PetscScalar b[]) {
-  const Repulsion r = (Repulsion)ForcesFind(forces, "contact");
-  const Obstacles o = r ? r->bodies->obstacles : NULL;
-  PetscReal *rates;
-  PetscFunctionBeginUser;
-  if (!o || !o->free->M) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(3 * o->free->M, &rates));
-  PetscCall(LayoutGather(o->free, 3, q, rates));
-  PetscCall(LayoutGather(r->membrane->layout, 2, V, r->all));
-  for (PetscInt k = 0; k < 3 * o->free->M && !known; k++) rates[k] *= o->at.end / PetscAbsReal(alpha);
-  for (PetscInt k = 0; k < r->count; k++) {
-    const Spring *s = &r->spring[k];
-    PetscReal along = 0;
-    if (!SpringHasBody(s)) continue;
-    for (int c = 0; c < 6; c++)
-      if (s->body[c / 3]) along += s->pull[c / 3][c % 3] * rates[3 * (s->body[c / 3] - 1) + c % 3];
-    if (known) r->spring[k].shifted = along;
-    const PetscReal T = alpha * s->stiffness * (SpringStretch(s, r->all) + along) - (known ? s->push : 0);
-    if (F) SpringPull(s, r->membrane->layout, alpha * s->stiffness * along, F);
-    for (int c = 0; c < 6 && b; c++) {
-      const PetscInt own = 3 * (s->body[c / 3] - 1 - o->free->first) + c % 3;
-      if (s->body[c / 3] && own >= 0 && own < FreeBodiesOwn(o)) b[own] += T * s->pull[c / 3][c % 3];
-    }
-  }
-  PetscCall(PetscFree(rates));
+  for (PetscInt k = 0; k < r->count; k++) SpringPull(&r->spring[k], r->bodies->layout, -alpha * r->spring[k].push, F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const PetscScalar x[], PetscReal *sum) {
   const Repulsion r = (Repulsion)context;
   PetscFunctionBeginUser;
-  PetscCall(LayoutGather(r->membrane->layout, 2, x, r->all));
+  PetscCall(LayoutGather(r->bodies->layout, 2, x, r->all));
   for (PetscInt k = 0; k < r->count; k++) {
     const Spring *s = &r->spring[k];
-    PetscReal apart = s->beyond - s->distance * s->normal[0];
-    if (s->n < 3 && !SpringHasBody(s)) continue; /* of a wall or an obstacle */
+    PetscReal apart = -s->distance * s->normal[0];
+    if (s->n < 3) continue; /* of a wall or of an obstacle that contact does not move */
     for (PetscInt i = 0; i < s->n; i++) apart += s->weight[i] * X[2 * s->marker[i]];
-    *sum += (s->push - s->stiffness * (SpringStretch(s, r->all) + s->shifted)) * s->normal[0] * apart;
+    *sum += (s->push - s->stiffness * SpringStretch(s, r->all)) * s->normal[0] * apart;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -200,11 +155,10 @@ static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[]
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, x, r->all));
   PetscCall(BodiesSee(r->bodies, at, r->all, r->all));
-  PetscCall(FindSprings(r, at, r->all, &count, &spring));
+  PetscCall(FindSprings(r, r->all, &count, &spring));
   for (PetscInt k = 0; k < count; k++) {
     const Spring *s = &spring[k];
-    const PetscInt v = s->n ? LayoutBody(l, s->marker[0]) : -1;
-    if (E && v >= l->own && v < l->end) E[v] += s->energy;
+    if (E && s->vesicle >= l->own && s->vesicle < l->end) E[s->vesicle] += s->energy;
     if (y) SpringPull(s, l, s->push - s->stiffness * SpringStretch(s, r->all), y);
   }
   PetscCall(PetscFree(spring));

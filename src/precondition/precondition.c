@@ -24,7 +24,7 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   p->unknowns = u;
   p->flexible = flexible;
   p->step_ratio = scene->time.adapt == ADAPT_ERROR && !c->bodies->obstacles ? ADAPTED_RATIO : OBSTACLE_STEP_RATIO;
-  PetscCall(PetscMalloc1(u->velocity, &p->force));
+  PetscCall(PetscMalloc1(2 * c->bodies->layout->n, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
   if (c->mobility->near && c->fluid->steady && c->membrane->layout->M > DENSE_TOGETHER) {

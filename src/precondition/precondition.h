@@ -28,7 +28,7 @@ struct _p_Preconditioner {
   Application now;
   PetscBool flexible; /* blocks may be made anew under way */
   PetscBool failed;   /* a block could not be factored */
-  PetscScalar *force; /* [2n] of the own vesicles, work */
+  PetscScalar *force; /* [2(n + w)] work */
 };
 
 /* PreconditionerCreate - for the scene; flexible: for a KSP that allows a changing preconditioner. Collective. */

@@ -1,6 +1,6 @@
 #include "problem/coupling.h"
 #include "bodies/bending.h"
-#include "bodies/repulsion.h"
+#include "bodies/freebodies.h"
 
 PetscErrorCode CouplingCopyVesicles(Coupling c, Vec from, Vec to) {
   const PetscScalar *a;
@@ -97,8 +97,20 @@ PetscErrorCode CouplingSpreadBending(Coupling c, PetscReal alpha, Vec X, Vec w) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, const PetscReal shift[], Vec F,
-                                 PetscReal push[]) {
+PetscErrorCode CouplingMarkers(Coupling c, Vec Y, Vec place, Vec all) {
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(c->X, all));
+  PetscCall(CouplingCopyVesicles(c, Y, all));
+  if (!place) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(all, &x));
+  FreeBodiesShift(c->bodies->obstacles, place, x + BodiesFirstObstacle(c->bodies));
+  PetscCall(VecRestoreArray(all, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, Vec F, PetscReal push[]) {
+  const PetscInt first = BodiesFirstObstacle(c->bodies);
   const PetscScalar *x, *y, *s;
   PetscScalar *f;
   PetscFunctionBeginUser;
@@ -108,7 +120,8 @@ PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, const Pets
   PetscCall(VecGetArray(F, &f));
   PetscCall(ForcesRate(c->forces, 1, y, f));
   PetscCall(ForcesKnown(c->forces, 1, x, f));
-  PetscCall(RepulsionBodies(c->forces, PETSC_TRUE, 1, y, shift, f, push));
+  if (push) FreeBodiesSum(c->bodies->obstacles, f + first, push);
+  PetscCall(PetscArrayzero(f + first, BodiesObstacleNumbers(c->bodies)));
   if (sigma) {
     PetscCall(VecGetArrayRead(sigma, &s));
     LawForce(c->law, 1, s, f);

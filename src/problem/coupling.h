@@ -67,12 +67,12 @@ static inline PetscReal CouplingBending(Coupling coupling) {
 PETSC_EXTERN PetscErrorCode CouplingSpreadTension(Coupling coupling, PetscReal alpha, Vec sigma, Vec w);
 PETSC_EXTERN PetscErrorCode CouplingSpreadBending(Coupling coupling, PetscReal alpha, Vec X, Vec w);
 
-/* CouplingStepForce - F = K Y + k + Dm^T sigma, minus the forces at the markers Y, linearised at the markers X placed
-   (bodies/force.h), and the law's of sigma (NULL: without); F is zero behind the vesicles' part. shift[3 own free]: how
-   far free bodies are from where they have been placed, and minus the force of contact on them is added
-   to push[3 own free] (NULL: not wanted). Collective. */
-PETSC_EXTERN PetscErrorCode CouplingStepForce(Coupling coupling, Vec Y, Vec X, Vec sigma, const PetscReal shift[],
-                                              Vec F, PetscReal push[]);
+/* CouplingMarkers - the markers of all bodies: the vesicles' Y, and the obstacles', free ones at a place. Not
+   collective. CouplingStepForce - F = K Y + k + Dm^T sigma, minus the forces at such markers Y, linearised at the
+   markers X placed (bodies/force.h), and the law's of sigma (NULL: without); F is zero behind the vesicles' part. Minus
+   the force of contact on free bodies is added to push[3 own free] (NULL: not wanted). Collective. */
+PETSC_EXTERN PetscErrorCode CouplingMarkers(Coupling coupling, Vec Y, Vec place, Vec all);
+PETSC_EXTERN PetscErrorCode CouplingStepForce(Coupling coupling, Vec Y, Vec X, Vec sigma, Vec F, PetscReal push[]);
 
 /* CouplingTread - U += alpha V dX/dt, the velocity of markers by the labels' own motion. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);

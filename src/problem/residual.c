@@ -1,14 +1,16 @@
 #include "problem/residual.h"
 #include "bodies/freebodies.h"
-#include "bodies/repulsion.h"
 
-/* (2) F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), and the unknown F of obstacles. */
+/* (2) F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), and the unknown F of obstacles; s->push[0] is minus
+   the force of contact on free bodies. */
 static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   const Unknowns u = s->unknowns;
   PetscScalar *f;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(F, &f));
   PetscCall(UnknownsForce(u, x, f));
+  PetscCall(PetscArrayzero(s->push[0], s->free));
+  if (s->free) FreeBodiesSum(u->coupling->bodies->obstacles, f + u->velocity, s->push[0]);
   PetscCall(PetscArraycpy(f + u->velocity, x + u->velocity, BodiesObstacleNumbers(u->coupling->bodies)));
   PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -39,19 +41,19 @@ static PetscErrorCode Subtract(Vec known, PetscInt n, PetscScalar y[]) {
 
 /* (5) m R q, (6) R^T F + load + the force of contact, with inertia - a0 M q + INT_inside R^T Du/Dt; y: the rows of
    obstacles. */
-static PetscErrorCode ReducedBodies(Reduced s, const CoupledProblem *q, const PetscScalar x[], PetscScalar y[]) {
+static void ReducedBodies(Reduced s, const CoupledProblem *q, const PetscScalar x[], PetscScalar y[]) {
   const Unknowns u = s->unknowns;
   const Coupling c = u->coupling;
   const Mobility m = c->mobility;
-  const PetscInt markers = BodiesObstacleNumbers(c->bodies), first = 3 * c->bodies->obstacles->free->first;
-  PetscFunctionBeginUser;
-  FreeBodiesRows(c->bodies->obstacles, q ? q->load : NULL, x + u->velocity, y);
-  for (PetscInt k = 0; m->inner && c->fluid->alpha > 0 && k < FreeBodiesOwn(c->bodies->obstacles); k++)
-    y[markers + k] += m->rate[q != NULL][first + k] -
-                      c->fluid->alpha * m->inner->mass[first + k] * x[u->velocity + markers + k];
-  PetscCall(
-      RepulsionBodies(c->forces, PETSC_FALSE, -1 / c->fluid->a0, x, x + u->velocity + markers, NULL, y + markers));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const Obstacles o = c->bodies->obstacles;
+  const PetscInt markers = BodiesObstacleNumbers(c->bodies), first = 3 * o->free->first;
+  const PetscScalar *F = x + u->velocity, *rate = F + markers;
+  PetscScalar *rows = y + markers;
+  FreeBodiesCarry(o, 1, o->ratio, rate, y);
+  for (PetscInt k = 0; k < s->free; k++) rows[k] = (q ? q->load[k] : 0) - s->push[q != NULL][k];
+  FreeBodiesSum(o, F, rows);
+  for (PetscInt k = 0; m->inner && c->fluid->alpha > 0 && k < s->free; k++)
+    rows[k] += m->rate[q != NULL][first + k] - c->fluid->alpha * m->inner->mass[first + k] * rate[k];
 }
 
 /* The residual y of x in the equations of residual.h, scaled, where s->G has G and s->U has U (1) of x. With q NULL:
@@ -73,7 +75,7 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
   if (q) PetscCall(Subtract(q->k, markers, y));
   if (c->bodies->obstacles) { /* (5) beta N N^T F + m R q, (6) */
     ObstaclesRows(c->bodies->obstacles, x + n, y + n);
-    PetscCall(ReducedBodies(s, q, x, y + n));
+    ReducedBodies(s, q, x, y + n);
   }
   LawRows(c->law, x, x + edges, y + edges); /* (4) Dm V/h^2 - g */
   if (q) PetscCall(Subtract(q->g, u->edges, y + edges));
@@ -102,6 +104,7 @@ static PetscErrorCode ReducedMult(Mat A, Vec x, Vec y) {
 PetscErrorCode ReducedBegin(Reduced s, const CoupledProblem *problem) {
   PetscFunctionBeginUser;
   s->problem = problem;
+  PetscCall(PetscArrayzero(s->push[1], s->free));
   PetscCall(MobilityBegin(s->unknowns->coupling->mobility, &problem->known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,6 +115,7 @@ PetscErrorCode ReducedAdd(Reduced s, Vec added, Vec x, Vec residual) {
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(added, &a));
   PetscCall(ReducedForce(s, a, s->F));
+  for (PetscInt k = 0; k < s->free; k++) s->push[1][k] += s->push[0][k];
   PetscCall(ReducedMotion(s, a, NULL, s->G));
   PetscCall(VecRestoreArrayRead(added, &a));
   PetscCall(MobilityAdd(s->unknowns->coupling->mobility, s->F, s->G, s->U));
@@ -135,6 +139,8 @@ PetscErrorCode ReducedCreate(Unknowns u, Reduced *out) {
   s->unknowns = u;
   PetscCall(LayoutCreateVec(c->bodies->layout, 2, &s->F));
   PetscCall(VecDuplicate(s->F, &s->U));
+  s->free = u->solid - BodiesObstacleNumbers(c->bodies);
+  PetscCall(PetscMalloc2(s->free, &s->push[0], s->free, &s->push[1]));
   PetscCall(LayoutCreateVec(c->membrane->layout, 2, &s->G));
   PetscCall(MatCreateShell(c->fluid->grid->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))ReducedMult));
@@ -149,6 +155,7 @@ PetscErrorCode ReducedDestroy(Reduced *reduced) {
   PetscCall(VecDestroy(&s->U));
   PetscCall(VecDestroy(&s->G));
   PetscCall(MatDestroy(&s->A));
+  PetscCall(PetscFree2(s->push[0], s->push[1]));
   PetscCall(PetscFree(*reduced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -37,6 +37,8 @@ struct _p_Reduced {
   const CoupledProblem *problem; /* the problem under way, borrowed */
   Vec F, U;                      /* work, all bodies' markers: forces and velocity */
   Vec G;                         /* work, the vesicles' markers: motion */
+  PetscInt free;                 /* 3 own free */
+  PetscScalar *push[2]; /* [free] minus the force of contact on own bodies: of the last F, of the step so far */
 };
 
 /* ReducedCreate - the problem for these unknowns. Collective. */

@@ -1,6 +1,5 @@
 #include "problem/unknowns.h"
 #include "bodies/freebodies.h"
-#include "bodies/repulsion.h"
 
 /* 2 R0 of the smallest vesicle, without vesicles half of the box's shorter side. */
 static PetscReal Length(Coupling c) {
@@ -22,11 +21,13 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   u->solid = BodiesObstacleNumbers(coupling->bodies);
   if (coupling->bodies->obstacles) u->solid += FreeBodiesOwn(coupling->bodies->obstacles);
   u->edges = coupling->law->n;
+  PetscCall(PetscCalloc1(2 * coupling->bodies->layout->n, &u->V));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode UnknownsDestroy(Unknowns *unknowns) {
   PetscFunctionBeginUser;
+  if (*unknowns) PetscCall(PetscFree((*unknowns)->V));
   PetscCall(PetscFree(*unknowns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,11 +93,14 @@ void UnknownsScale(Unknowns u, PetscBool inverse, PetscScalar y[]) {
 
 PetscErrorCode UnknownsForce(Unknowns u, const PetscScalar x[], PetscScalar F[]) {
   const Coupling c = u->coupling;
+  const Obstacles o = c->bodies->obstacles;
+  const PetscInt solid = BodiesObstacleNumbers(c->bodies);
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(F, u->velocity));
-  PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, x, F));
-  PetscCall(RepulsionBodies(c->forces, PETSC_FALSE, 1 / c->fluid->a0, x,
-                            x + u->velocity + BodiesObstacleNumbers(c->bodies), F, NULL));
+  PetscCall(PetscArrayzero(F, u->velocity + solid));
+  PetscCall(PetscArraycpy(u->V, x, u->velocity));
+  PetscCall(PetscArrayzero(u->V + u->velocity, solid));
+  if (o) FreeBodiesCarry(o, c->fluid->a0 * o->at.end, NULL, x + u->velocity + solid, u->V + u->velocity);
+  PetscCall(ForcesRate(c->forces, 1 / c->fluid->a0, u->V, F));
   LawForce(c->law, 1, x + UnknownsEdges(u), F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,6 +10,7 @@ struct _p_Unknowns {
   Coupling coupling;               /* borrowed */
   PetscReal length;                /* l, the length of the residuals' factors: 2 R0 of the smallest vesicle */
   PetscInt velocity, solid, edges; /* own numbers of each kind */
+  PetscScalar *V;                  /* [2(n + w)] work: velocities of all own markers */
 };
 
 /* UnknownsCreate - the layout of the unknowns of these bodies. Collective. */
@@ -38,8 +39,8 @@ PETSC_EXTERN PetscErrorCode UnknownsUnpack(Unknowns unknowns, Vec x, Vec V, Vec 
    collective. */
 PETSC_EXTERN void UnknownsScale(Unknowns unknowns, PetscBool inverse, PetscScalar y[]);
 
-/* UnknownsForce - F[2n] = Dm^T sigma + (1/a0) K V, minus the forces on the own vesicles' markers for the unknowns x.
-   Collective. */
+/* UnknownsForce - F[2(n + w)] = Dm^T sigma + (1/a0) K V, minus the forces on the own vesicles' markers and those of
+   contact on free bodies, for the unknowns x. Collective. */
 PETSC_EXTERN PetscErrorCode UnknownsForce(Unknowns unknowns, const PetscScalar x[], PetscScalar F[]);
 
 /* UnknownsEdges - index at which the law's unknowns start in a rank's part. Not collective. */

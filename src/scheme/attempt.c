@@ -87,10 +87,10 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (d->place) { /* next.place: without the new q */
     PetscCall(CarryBodies(s, d, d->adams.history, d->next.place));
-    PetscCall(FreeBodiesShift(obstacles, d->next.place, d->place, d->shift));
     PetscCall(PetscArrayzero(d->load, FreeBodiesOwn(obstacles)));
   }
-  PetscCall(CouplingStepForce(s->coupling, d->Y, d->Xstar, NULL, d->shift, d->force, d->load));
+  PetscCall(CouplingMarkers(s->coupling, d->Y, d->next.place, d->all));
+  PetscCall(CouplingStepForce(s->coupling, d->all, d->Xstar, NULL, d->force, d->load));
   if (d->place) PetscCall(KnownForces(s, d, b));
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
   PetscCall(VecCopy(s->background, d->moved));
@@ -163,10 +163,7 @@ static PetscErrorCode Solve(Scheme s, Coupled *d) {
 static PetscErrorCode MoveMarkers(Scheme s, Coupled *d, PetscReal a0) {
   State *n = &d->next;
   PetscFunctionBeginUser;
-  if (n->place) {
-    PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, d->adams.end, n->place));
-    PetscCall(FreeBodiesShift(s->coupling->bodies->obstacles, n->place, d->place, d->shift));
-  }
+  if (n->place) PetscCall(FreeBodiesMove(s->coupling->bodies->obstacles, n->solid, d->adams.end, n->place));
   if (n->p)
     PetscCall(SchemeMeasureDivergence(s, n->w, NULL));
   else
@@ -188,7 +185,8 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   PetscScalar *F;
   PetscFunctionBeginUser;
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CouplingStepForce(s->coupling, n->X, d->Xstar, n->sigma, d->shift, d->known, NULL));
+  PetscCall(CouplingMarkers(s->coupling, n->X, n->place, d->all));
+  PetscCall(CouplingStepForce(s->coupling, d->all, d->Xstar, n->sigma, d->known, NULL));
   if (n->place) {
     PetscCall(VecGetArray(d->known, &F));
     PetscCall(VecGetArrayRead(n->solid, &solid));
@@ -196,7 +194,7 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
     PetscCall(VecRestoreArrayRead(n->solid, &solid));
     PetscCall(VecRestoreArray(d->known, &F));
   }
-  PetscCall(StressMeasure(s, n->w, n->p, d->known, n->X, n->U));
+  PetscCall(StressMeasure(s, n->w, n->p, d->known, d->all, n->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,9 +239,10 @@ PetscErrorCode CoupledEstimate(Scheme s, PetscReal *error) {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(d->Xstar, d->Y));
   PetscCall(LargestDifference(s, d->next.X, d->Y, &found[0]));
-  if (d->place)
-    found[0] = PetscMax(found[0], ObstaclesStride(s->coupling->bodies->obstacles, (Instant){.place = d->place},
-                                                  (Instant){.place = d->next.place}));
+  if (d->place) {
+    PetscCall(VecWAXPY(d->history.guess[0], -1, d->place, d->next.place));
+    PetscCall(FreeBodiesFarthest(s->coupling->bodies->obstacles, d->history.guess[0], &found[0]));
+  }
   if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   *error = found[1] > 0 ? NAN : found[0] / SmallestRadius(s);
@@ -263,20 +262,16 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec state
 /* Free bodies: largest = max(largest, that of places, or (rates) of velocities q at the farthest markers). */
 static PetscErrorCode MissBodies(Scheme s, Coupled *d, PetscInt count, PetscBool rates, PetscReal *largest) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const Vec x = rates ? d->next.solid : d->next.place, guess = d->history.guess[rates];
+  const Vec *guess = d->history.guess;
   PetscReal star[BDF_STATES];
-  const PetscScalar *q;
   PetscFunctionBeginUser;
   if (!d->place) PetscFunctionReturn(PETSC_SUCCESS);
   BDFGuess(count, d->history.step, star);
-  PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), guess));
-  if (rates) {
-    PetscCall(VecAXPY(guess, -1, x));
-    PetscCall(VecGetArrayRead(guess, &q));
-    *largest = PetscMax(*largest, FreeBodiesSpeed(o, q));
-    PetscCall(VecRestoreArrayRead(guess, &q));
-  } else
-    *largest = PetscMax(*largest, ObstaclesStride(o, (Instant){.place = guess}, (Instant){.place = x}));
+  PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), guess[rates]));
+  PetscCall(VecAXPY(guess[rates], -1, rates ? d->next.solid : d->next.place));
+  if (rates) PetscCall(VecSet(guess[0], 0));
+  if (rates) PetscCall(FreeBodiesMove(o, guess[1], 1, guess[0]));
+  PetscCall(FreeBodiesFarthest(o, guess[0], largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

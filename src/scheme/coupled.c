@@ -263,25 +263,27 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   if (s->state.place) {
     const PetscInt own = FreeBodiesOwn(s->coupling->bodies->obstacles);
     PetscCall(VecDuplicate(s->state.place, &d->place));
-    PetscCall(PetscMalloc2(own, &d->load, own, &d->shift));
+    PetscCall(PetscMalloc1(own, &d->load));
   }
   PetscCall(LayoutCreateVec(s->coupling->bodies->layout, 2, &d->known));
   PetscCall(VecDuplicate(d->known, &d->force));
+  PetscCall(VecDuplicate(d->known, &d->all));
   PetscCall(PetscCalloc1(s->membrane->layout->bodies, &d->made_with));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Destroy_Coupled(Scheme s) {
   Coupled *d = (Coupled *)s->data;
-  Vec *others[] = {&d->Xstar, &d->Xhat, &d->V, &d->known, &d->Y, &d->P, &d->made_at, &d->moved, &d->force, &d->place};
+  Vec *others[] = {&d->Xstar,   &d->Xhat,  &d->V,     &d->known, &d->Y,  &d->P,
+                   &d->made_at, &d->moved, &d->force, &d->place, &d->all};
   PetscFunctionBeginUser;
   PetscCall(CoupledSolverDestroy(&d->solver));
   PetscCall(ConvectionDestroy(&d->convection));
   PetscCall(StateDestroy(&d->next));
   PetscCall(HistoryDestroy(&d->history));
-  for (int i = 0; i < 10; i++) PetscCall(VecDestroy(others[i]));
+  for (int i = 0; i < 11; i++) PetscCall(VecDestroy(others[i]));
   PetscCall(PetscFree(d->made_with));
-  PetscCall(PetscFree2(d->load, d->shift));
+  PetscCall(PetscFree(d->load));
   PetscCall(PetscFree(s->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

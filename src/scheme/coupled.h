@@ -7,26 +7,27 @@
 
 typedef struct {
   CoupledSolver solver;
-  Convection convection;   /* NULL unless the fluid has it */
-  State next;              /* the state being made */
-  History history;         /* what it is made from */
-  PetscInt order;          /* order of the step being made */
-  StepPlan next_plan;      /* order and guess that the step being made plans for the next one */
-  PetscBool start;         /* the first state is being solved */
-  PetscBool graded;        /* the step being made is a graded start */
-  PetscReal done;          /* the part of a graded start that is done (time) */
-  PetscBool warned;        /* a warning of edges that were off has been given */
-  Vec made_at;             /* markers at which the preconditioner's dense blocks were made */
-  PetscReal *made_with;    /* [vesicles] label speeds with which these blocks were made */
-  StreamPast past;         /* the states before, where their flows act as a force */
-  Vec Xstar, Xhat;         /* extrapolated markers, BDF history of the markers */
-  Adams adams;             /* weights of the velocities of free bodies in the step being made */
-  Vec place;               /* of free bodies, extrapolated; NULL without */
-  PetscReal *load, *shift; /* [3 own free] known force and torque on them; their way from there; NULL without */
-  Vec moved;               /* known part of the markers' motion */
-  Vec force;               /* minus the known part of the force on all bodies' markers */
-  Vec V, known, Y;         /* solved part and known part of the markers' velocity, obstacles included; work */
-  Vec P;                   /* the markers' velocity as the labels of the step see it */
+  Convection convection; /* NULL unless the fluid has it */
+  State next;            /* the state being made */
+  History history;       /* what it is made from */
+  PetscInt order;        /* order of the step being made */
+  StepPlan next_plan;    /* order and guess that the step being made plans for the next one */
+  PetscBool start;       /* the first state is being solved */
+  PetscBool graded;      /* the step being made is a graded start */
+  PetscReal done;        /* the part of a graded start that is done (time) */
+  PetscBool warned;      /* a warning of edges that were off has been given */
+  Vec made_at;           /* markers at which the preconditioner's dense blocks were made */
+  PetscReal *made_with;  /* [vesicles] label speeds with which these blocks were made */
+  StreamPast past;       /* the states before, where their flows act as a force */
+  Vec Xstar, Xhat;       /* extrapolated markers, BDF history of the markers */
+  Adams adams;           /* weights of the velocities of free bodies in the step being made */
+  Vec place;             /* of free bodies, extrapolated; NULL without */
+  PetscReal *load;       /* [3 own free] known force and torque on them; NULL without */
+  Vec all;               /* markers of all bodies, work */
+  Vec moved;             /* known part of the markers' motion */
+  Vec force;             /* minus the known part of the force on all bodies' markers */
+  Vec V, known, Y;       /* solved part and known part of the markers' velocity, obstacles included; work */
+  Vec P;                 /* the markers' velocity as the labels of the step see it */
 } Coupled;
 
 /* The flows of a scheme whose states have them. */
