@@ -74,7 +74,7 @@ class Options(TypedDict, total=False):
     obstacle_torque: Value  # torque from outside on free obstacles about their centroids, counter-clockwise; one for all or one an obstacle (length^4/time^2)
     obstacle_file: Value  # curves as -vesicle_file's, a clockwise one a container of the fluid; one after a line # open has its ends on a wall, one whose last point is the first but for a period spans the box, its solid on the left; lines # velocity u_x u_y and # rotation w before a curve are its own
     obstacle_spacing: Value  # spacing ds/h of the obstacles' markers, without influence on the flow from 0.5 to 2 but for films thinner than it
-    obstacle_factor: Literal['auto', 'dense', 'modes'] | None  # preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways, and for more than 500 of -obstacle_free all in any box
+    obstacle_factor: Literal['auto', 'dense', 'modes'] | None  # preconditioner's block of the obstacles: the dense inverse of all; or that of each curve and a few points on every curve for what others do to it. auto: modes for more than 2000 markers in a box that is periodic both ways, or of -obstacle_free all in any box
     tracer_file: Value  # passive points that the flow carries along: x y a line
     tracer_grid: Value  # tracers besides: columns and rows at equal distances in the box; 0,0: none
     delta_type: Literal['ib6', 'cbs54'] | None  # kernel between grid and markers; split, penalty: ib6

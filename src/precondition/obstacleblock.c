@@ -116,16 +116,15 @@ static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cost of a new factor in iterations, those with the grid's own mobility by 2W solves. With modes the inverse K counts,
-   and of an iteration the near field, measured at 500 to 5000 markers of all bodies. */
+/* Cost of a new factor in iterations, those with the grid's own mobility by 2W solves. With modes the inverse K counts.
+   The near field's part of an iteration was measured at 500 to 5000 markers of all bodies. */
 static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
-  if (b->modes) {
-    const PetscReal modes = (PetscReal)ObstacleModesCount(b->modes), M = (PetscReal)b->coupling->bodies->layout->M;
-    return 2.5e-10 * modes * modes * modes / (1.5e-8 * cells + 2e-9 * M * PetscMin(M, 5000) + 5e-5);
-  }
-  return (IsBySolves(b) ? 2 * W : 0) + AgeCost(1, W, 0, cells);
+  const PetscReal M = (PetscReal)b->coupling->bodies->layout->M,
+                  modes = b->modes ? (PetscReal)ObstacleModesCount(b->modes) : 0;
+  const PetscReal making = b->modes ? 2.5e-10 * modes * modes * modes : W * W * (5e-10 * W + 6e-7);
+  return (IsBySolves(b) ? 2 * W : 0) + making / (1.5e-8 * cells + 2e-9 * M * PetscMin(M, 5000) + 5e-5);
 }
 
 /* The whole block's inverse, on root. */

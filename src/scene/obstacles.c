@@ -224,7 +224,6 @@ static PetscErrorCode ObstaclesMakeFromFile(Scene scene, Outlines *o) {
 #define MOST_MARKERS 40000
 #define MOST_DENSE 4000    /* markers that a dense block of the preconditioner may have */
 #define MOST_TOGETHER 2000 /* markers up to which all obstacles share a dense block */
-#define MOST_FREE 500      /* the same where all move freely, and the block grows old */
 
 /* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
    is half a spacing off its wall. */
@@ -260,7 +259,7 @@ static PetscErrorCode ObstaclesChooseFactor(Scene scene, const Outlines *o, Scen
   const PetscBool periodic = f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC;
   /* modes know neither walls that obstacles stand on nor unbounded fluid */
   const PetscBool free = !strcmp(own->free.which, "all") && !FluidSpecIsFree(f);
-  const PetscBool many = free ? markers > MOST_FREE : periodic && markers > MOST_TOGETHER;
+  const PetscBool many = (free || periodic) && markers > MOST_TOGETHER;
   PetscInt most = 0;
   PetscFunctionBeginUser;
   own->modes = own->factor == OBSTACLE_FACTOR_AUTO ? many : own->factor == OBSTACLE_FACTOR_MODES;
