@@ -103,17 +103,16 @@ PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *out) {
   o->beta = 1 / (4 * scene->fluid.nu);
   PetscCall(LayoutCreatePart(all, all->bodies - curves, all->bodies, &o->layout));
   const PetscInt W = o->layout->M;
-  PetscCall(PetscCalloc7(2 * W, &o->rest, 2 * W, &o->X, 2 * W, &o->N, curves, &o->motion, curves, &o->ds, curves,
-                         &o->spectral, curves, &o->container));
-  PetscCall(PetscMalloc3(curves, &o->kind, curves, &o->vesicle, curves, &o->ratio));
-  PetscCall(PetscArraycpy(o->kind, own->outline.kind, curves));
-  PetscCall(PetscArraycpy(o->rest, own->outline.X, 2 * W));
-  PetscCall(PetscArraycpy(o->X, own->outline.X, 2 * W));
-  PetscCall(PetscArraycpy(o->container, own->container, curves));
+  o->rest = own->outline.X;
+  o->kind = own->outline.kind;
+  o->container = own->container;
+  o->vesicle = own->vesicle;
+  PetscCall(PetscCalloc6(2 * W, &o->X, 2 * W, &o->N, curves, &o->motion, curves, &o->ds, curves, &o->spectral, curves,
+                         &o->ratio));
+  PetscCall(PetscArraycpy(o->X, o->rest, 2 * W));
   for (PetscInt b = 0; b < curves; b++) {
     PetscCall(SpectralCreate(LayoutCount(o->layout, b), &o->spectral[b]));
     PetscCall(Describe(o, own, b));
-    o->vesicle[b] = own->vesicle[b];
     o->ratio[b] = own->vesicle[b] < 0 ? 1 : SceneViscosityRatio(scene, own->vesicle[b]);
   }
   PetscCall(ObstaclesFree(o, scene));
@@ -142,8 +141,7 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < o->layout->bodies; b++) PetscCall(SpectralDestroy(&o->spectral[b]));
-  PetscCall(PetscFree7(o->rest, o->X, o->N, o->motion, o->ds, o->spectral, o->container));
-  PetscCall(PetscFree3(o->kind, o->vesicle, o->ratio));
+  PetscCall(PetscFree6(o->X, o->N, o->motion, o->ds, o->spectral, o->ratio));
   PetscCall(VecDestroy(&o->at.place));
   PetscCall(LayoutDestroy(&o->free));
   PetscCall(PetscFree2(o->load, o->density));

@@ -15,25 +15,25 @@
 
 typedef struct _p_Obstacles *Obstacles;
 struct _p_Obstacles {
-  Layout all;           /* borrowed: vesicles and obstacles */
-  Layout layout;        /* obstacles alone, on the same ranks */
-  PetscReal *rest;      /* [2W] markers of all obstacles at time 0 */
-  PetscReal *X;         /* [2W] where they have been placed */
-  Instant at;           /* at this time */
-  BodyMotion *motion;   /* [curves] */
-  Layout free;          /* bodies that move freely, as one marker each (freebodies.h) */
-  PetscReal *load;      /* [3 free] force and torque on each of them from outside */
-  PetscReal *density;   /* [free] of each of them over that of the fluid */
-  PetscBool moving;     /* whether a curve moves */
-  PetscReal *N;         /* [2W] unit vector of each curve's normals, dX/dk turned outwards, where placed */
-  PetscReal *ds;        /* [curves] mean edge */
-  PetscBool *container; /* [curves] the fluid is inside */
-  PetscInt *vesicle;    /* [curves] the vesicle around each; -1: none */
-  PetscReal *ratio;     /* [curves] viscosity around each over nu */
-  Spectral *spectral;   /* [curves] */
-  CurveKind *kind;      /* [curves] */
-  PetscReal beta;       /* 1/(4 nu) */
-  PetscBool modes;      /* the preconditioner takes their block apart (obstaclemodes.h) */
+  Layout all;                 /* borrowed: vesicles and obstacles */
+  Layout layout;              /* obstacles alone, on the same ranks */
+  const PetscReal *rest;      /* [2W] markers of all obstacles at time 0; the scene's, as kind, container and vesicle */
+  PetscReal *X;               /* [2W] where they have been placed */
+  Instant at;                 /* at this time */
+  BodyMotion *motion;         /* [curves] */
+  Layout free;                /* bodies that move freely, as one marker each (freebodies.h) */
+  PetscReal *load;            /* [3 free] force and torque on each of them from outside */
+  PetscReal *density;         /* [free] of each of them over that of the fluid */
+  PetscBool moving;           /* whether a curve moves */
+  PetscReal *N;               /* [2W] unit vector of each curve's normals, dX/dk turned outwards, where placed */
+  PetscReal *ds;              /* [curves] mean edge */
+  const CurveKind *kind;      /* [curves] */
+  const PetscBool *container; /* [curves] the fluid is inside */
+  const PetscInt *vesicle;    /* [curves] the vesicle around each; -1: none */
+  PetscReal *ratio;           /* [curves] viscosity around each over nu */
+  Spectral *spectral;         /* [curves] */
+  PetscReal beta;             /* 1/(4 nu) */
+  PetscBool modes;            /* the preconditioner takes their block apart (obstaclemodes.h) */
 };
 
 /* ObstaclesCreate - of the scene, as the last bodies of the layout of all; *obstacles is NULL where there are none.
