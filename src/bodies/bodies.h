@@ -25,12 +25,9 @@ PETSC_EXTERN PetscErrorCode BodiesDestroy(Bodies *bodies);
 PETSC_EXTERN PetscErrorCode BodiesSee(Bodies bodies, Instant at, const PetscReal X[], PetscReal all[]);
 
 /* BodiesObstacleNumbers - this rank's numbers (two a marker) of obstacles in a marker vector of all bodies;
-   BodiesFirstObstacle - where they start. BodiesObstacleMarkers - markers of all ranks' obstacles. Not collective. */
+   BodiesFirstObstacle - where they start. Not collective. */
 static inline PetscInt BodiesObstacleNumbers(Bodies b) {
   return b->obstacles ? 2 * b->obstacles->layout->n : 0;
-}
-static inline PetscInt BodiesObstacleMarkers(Bodies b) {
-  return b->obstacles ? b->obstacles->layout->M : 0;
 }
 static inline PetscInt BodiesFirstObstacle(Bodies b) {
   return 2 * b->layout->n - BodiesObstacleNumbers(b);

@@ -3,9 +3,7 @@
 PetscErrorCode FreeBodiesCreateVecs(Obstacles o, Vec *force, Vec *place) {
   PetscScalar *y;
   PetscFunctionBeginUser;
-  PetscCall(VecCreate(o->layout->comm, force));
-  PetscCall(VecSetSizes(*force, 2 * o->layout->n + FreeBodiesOwn(o), PETSC_DETERMINE));
-  PetscCall(VecSetType(*force, VECSTANDARD));
+  PetscCall(VecCreateMPI(o->layout->comm, 2 * o->layout->n + FreeBodiesOwn(o), PETSC_DETERMINE, force));
   if (!o->free->M) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, 3 * o->free->M, place));
   PetscCall(VecGetArray(*place, &y));
@@ -108,21 +106,14 @@ PetscErrorCode FreeBodiesFarthest(Obstacles o, Vec way, PetscReal *farthest) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FreeBodiesRates(Obstacles o, Vec force, PetscReal q[]) {
+PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal time, Vec place) {
   const PetscScalar *x;
+  PetscScalar *q, *y;
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * o->free->M, &q));
   PetscCall(VecGetArrayRead(force, &x));
   PetscCall(LayoutGather(o->free, 3, x + 2 * o->layout->n, q));
   PetscCall(VecRestoreArrayRead(force, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal time, Vec place) {
-  PetscReal *q;
-  PetscScalar *y;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * o->free->M, &q));
-  PetscCall(FreeBodiesRates(o, force, q));
   PetscCall(VecGetArray(place, &y));
   for (PetscInt k = 0; k < 3 * o->free->M; k++) y[k] += time * q[k];
   PetscCall(VecRestoreArray(place, &y));

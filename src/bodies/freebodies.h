@@ -46,8 +46,7 @@ static inline PetscReal FreeBodyUnit(Obstacles o, PetscInt curve, PetscInt numbe
    free], or speed. Not collective. */
 PETSC_EXTERN PetscErrorCode FreeBodiesFarthest(Obstacles obstacles, Vec way, PetscReal *farthest);
 
-/* FreeBodiesRates - q[3 free] of all bodies, from a state's force. FreeBodiesMove - place += time q. FreeBodiesTurn -
-   the force turns with the bodies from where they have been placed to this place. Collective. */
-PETSC_EXTERN PetscErrorCode FreeBodiesRates(Obstacles obstacles, Vec force, PetscReal q[]);
+/* FreeBodiesMove - place += time q, with the q of a state's force. FreeBodiesTurn - the force turns with the bodies
+   from where they have been placed to this place. Collective. */
 PETSC_EXTERN PetscErrorCode FreeBodiesMove(Obstacles obstacles, Vec force, PetscReal time, Vec place);
 PETSC_EXTERN PetscErrorCode FreeBodiesTurn(Obstacles obstacles, Vec place, Vec force);

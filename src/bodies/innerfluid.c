@@ -42,7 +42,8 @@ PetscErrorCode InnerFluidCreate(Obstacles o, PetscReal h, PetscReal smoothed, In
   PetscCall(PetscNew(&f));
   *out = f;
   f->obstacles = o;
-  PetscCall(PetscCalloc3(l->bodies + 1, &f->start, 3 * o->free->M, &f->mass, 3 * o->free->M, &f->sum));
+  PetscCall(PetscCalloc4(l->bodies + 1, &f->start, 3 * o->free->M, &f->mass, 3 * o->free->M, &f->rate[0],
+                         3 * o->free->M, &f->rate[1]));
   for (PetscInt b = 0; b < l->bodies; b++) {
     const PetscInt rings = o->motion[b].free ? 1 + (PetscInt)(ObstacleRadius(o, b) / h) : 0;
     f->start[b + 1] = f->start[b] + rings * LayoutCount(l, b);
@@ -59,7 +60,7 @@ PetscErrorCode InnerFluidDestroy(InnerFluid *inner) {
   InnerFluid f = *inner;
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3(f->start, f->mass, f->sum));
+  PetscCall(PetscFree4(f->start, f->mass, f->rate[0], f->rate[1]));
   PetscCall(PetscFree4(f->rest, f->X, f->weight, f->turn));
   PetscCall(PetscFree(*inner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -73,14 +74,15 @@ void InnerFluidPlace(InnerFluid f) {
   }
 }
 
-PetscErrorCode InnerFluidAdd(InnerFluid f, PetscReal alpha, const PetscReal g[], PetscReal rate[]) {
+PetscErrorCode InnerFluidAdd(InnerFluid f, InnerPart part, PetscReal alpha, const PetscReal g[]) {
   const Obstacles o = f->obstacles;
   const PetscInt n = 3 * o->free->M;
+  PetscReal *sum = f->rate[0];
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(f->sum, n));
+  PetscCall(PetscArrayzero(sum, n));
   for (PetscInt b = 0; b < o->layout->bodies; b++) {
     const BodyPose p = MotionPose(&o->motion[b], o->at);
-    PetscReal *own = f->sum + 3 * PetscMax(o->motion[b].free - 1, 0);
+    PetscReal *own = sum + 3 * PetscMax(o->motion[b].free - 1, 0);
     for (PetscInt k = f->start[b]; k < f->start[b + 1]; k++) {
       const PetscReal dx = f->X[2 * k] - p.center[0], dy = f->X[2 * k + 1] - p.center[1];
       own[0] += f->weight[k] * g[2 * k];
@@ -88,7 +90,9 @@ PetscErrorCode InnerFluidAdd(InnerFluid f, PetscReal alpha, const PetscReal g[],
       own[2] += f->turn[k] * (dx * g[2 * k + 1] - dy * g[2 * k]);
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, f->sum, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, o->layout->comm));
-  for (PetscInt k = 0; k < n; k++) rate[k] += alpha * f->sum[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, o->layout->comm));
+  for (PetscInt k = 0; k < n; k++) sum[k] *= alpha;
+  for (PetscInt k = 0; k < n && part != INNER_PRODUCT; k++)
+    f->rate[1][k] = (part == INNER_BEGIN ? 0 : f->rate[1][k]) + sum[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -34,7 +34,7 @@ struct _p_InnerFluid {
   PetscReal *weight;   /* [n] of the integral (length^2) */
   PetscReal *turn;     /* [n] of the integral for the rotation */
   PetscReal *mass;     /* [3 free] M over the fluid's density */
-  PetscReal *sum;      /* [3 free] work */
+  PetscReal *rate[2];  /* [3 free] INT R^T Du/Dt of what came last, and of the step so far */
 };
 
 /* InnerFluidCreate - of the free bodies among the obstacles, with points about h apart. InnerFluidPlace - X where the
@@ -43,6 +43,7 @@ PETSC_EXTERN PetscErrorCode InnerFluidCreate(Obstacles obstacles, PetscReal h, P
 PETSC_EXTERN PetscErrorCode InnerFluidDestroy(InnerFluid *inner);
 PETSC_EXTERN void InnerFluidPlace(InnerFluid inner);
 
-/* InnerFluidAdd - rate[3 free] += alpha INT_inside R^T g of all bodies, from parts g[2n] of g at the points that add up
-   over the ranks. Collective. */
-PETSC_EXTERN PetscErrorCode InnerFluidAdd(InnerFluid inner, PetscReal alpha, const PetscReal g[], PetscReal rate[]);
+/* InnerFluidAdd - alpha INT_inside R^T g of all bodies, from parts g[2n] of g at the points that add up over the ranks,
+   is added to the rate of the step (a step begins: it is the rate), or is that of a product. Collective. */
+typedef enum { INNER_PRODUCT, INNER_BEGIN, INNER_ADD } InnerPart;
+PETSC_EXTERN PetscErrorCode InnerFluidAdd(InnerFluid inner, InnerPart part, PetscReal alpha, const PetscReal g[]);

@@ -66,10 +66,9 @@ static PetscErrorCode ObstaclesFree(Obstacles o, Scene scene) {
   const Layout l = o->layout;
   PetscInt *start, *body, count = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(own->count + 1, &start, l->size + 1, &body));
+  PetscCall(PetscCalloc2(own->count + 1, &start, l->size + 1, &body));
   PetscCall(PetscMalloc2(3 * own->count, &o->load, own->count, &o->density));
   for (PetscInt k = 0; k <= own->count; k++) start[k] = k;
-  for (PetscMPIInt r = 0; r <= l->size; r++) body[r] = 0;
   for (PetscInt b = 0; b < l->bodies; b++) {
     if (!own->is[b]) continue;
     BodyMotion *m = &o->motion[b];

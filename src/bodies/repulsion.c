@@ -149,7 +149,7 @@ static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const P
    y NULL: not wanted; E[vesicles] += the energy of the films of each own vesicle, half of that of a film between two
    vesicles, E NULL: not wanted. Collective. */
 static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[], PetscScalar y[], PetscReal E[]) {
-  const Layout l = r->membrane->layout;
+  const Layout l = r->bodies->membrane->layout;
   Spring *spring;
   PetscInt count;
   PetscFunctionBeginUser;
@@ -193,7 +193,6 @@ PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force 
       !(bodies->vesicles || (bodies->obstacles && bodies->obstacles->free->M)))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&r));
-  r->membrane = bodies->membrane;
   r->bodies = bodies;
   r->grid = grid;
   r->law = scene->repulsion;

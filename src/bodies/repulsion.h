@@ -28,7 +28,6 @@ typedef struct {
 typedef struct _p_Repulsion *Repulsion;
 struct _p_Repulsion {
   Bodies bodies;      /* borrowed */
-  Membrane membrane;  /* the vesicles */
   Grid grid;          /* borrowed; its walls and periods */
   SceneRepulsion law; /* K, D, W and B, all resolved */
   Spring *spring;     /* of the step, the same on every rank */

@@ -49,7 +49,6 @@ PetscErrorCode MobilityCreate(Fluid fluid, Bodies bodies, const MobilitySetting 
   if (m->contrast) PetscCall(DipoleRowsCreate(fluid->grid, fluid->nu, &m->dipoles));
   if (!fluid->steady) PetscCall(VecDuplicate(m->F, &m->flow));
   if (!m->inner) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(3 * bodies->obstacles->free->M, &m->rate[0], 3 * bodies->obstacles->free->M, &m->rate[1]));
   PetscCall(StreamFlowsCreateVec(m->stream->flows, &m->sum));
   PetscCall(DMCreateGlobalVector(fluid->grid->velocity, &m->field));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,7 +64,6 @@ PetscErrorCode MobilityDestroy(Mobility *mobility) {
   PetscCall(NearFieldDestroy(&m->near));
   PetscCall(MarkersDestroy(&m->markers));
   PetscCall(InnerFluidDestroy(&m->inner));
-  PetscCall(PetscFree2(m->rate[0], m->rate[1]));
   PetscCall(VecDestroy(&m->sum));
   PetscCall(VecDestroy(&m->field));
   PetscCall(VecDestroy(&m->F));
@@ -124,13 +122,10 @@ static PetscErrorCode MobilityFinish(Mobility m, Vec F, Vec G, Vec U) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rate += alpha INT_inside R^T u of the u that E has passed last (`known`: rate of the step so far, else of a product).
- */
-static PetscErrorCode MobilityAddInner(Mobility m, PetscReal alpha, PetscBool known) {
+/* alpha INT_inside R^T u of the u that E has passed last. */
+static PetscErrorCode MobilityAddInner(Mobility m, InnerPart part, PetscReal alpha) {
   PetscFunctionBeginUser;
-  if (!m->inner) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!known) PetscCall(PetscArrayzero(m->rate[0], 3 * m->bodies->obstacles->free->M));
-  PetscCall(InnerFluidAdd(m->inner, alpha, m->markers->part + 2 * m->bodies->layout->M, m->rate[known]));
+  if (m->inner) PetscCall(InnerFluidAdd(m->inner, part, alpha, m->markers->part + 2 * m->bodies->layout->M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,7 +135,7 @@ PetscErrorCode MobilityApply(Mobility m, Vec F, Vec G, Vec U) {
     PetscCall(MobilitySetDipoles(m, G, PETSC_TRUE));
     PetscCall(MarkersRespond(m->markers, m->stream, m->dipoles, -1 / PetscSqr(m->fluid->grid->h), F, U));
     PetscCall(VecScale(U, MobilityGridPart(m, m->fluid->alpha)));
-    PetscCall(MobilityAddInner(m, m->fluid->alpha, PETSC_FALSE));
+    PetscCall(MobilityAddInner(m, INNER_PRODUCT, m->fluid->alpha));
   } else
     PetscCall(VecSet(U, 0));
   PetscCall(MobilityFinish(m, F, G, U));
@@ -154,9 +149,8 @@ PetscErrorCode MobilityBegin(Mobility m, const MobilityKnown *q) {
   m->added = 0;
   m->measures = (StreamMeasures){0};
   if (m->inner) { /* N(u*) */
-    PetscCall(PetscArrayzero(m->rate[1], 3 * m->bodies->obstacles->free->M));
     PetscCall(MarkersInterpolate(m->markers, q->f->values, NULL));
-    PetscCall(MobilityAddInner(m, -1, PETSC_TRUE));
+    PetscCall(MobilityAddInner(m, INNER_BEGIN, -1));
   }
   PetscCall(q->F ? VecCopy(q->F, m->F) : VecSet(m->F, 0));
   if (m->contrast) PetscCall(q->G ? VecCopy(q->G, m->G) : VecSet(m->G, 0));
@@ -179,11 +173,11 @@ static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
       for (PetscInt j = 0; j < past->count; j++) PetscCall(VecAXPY(m->sum, -past->weight[j], past->flow[j]));
       PetscCall(StreamFlowsVelocity(m->stream->flows, m->sum, m->field));
       PetscCall(MarkersInterpolate(m->markers, m->field, NULL));
-      PetscCall(MobilityAddInner(m, 1, PETSC_TRUE));
+      PetscCall(MobilityAddInner(m, INNER_ADD, 1));
     }
   } else {
     PetscCall(MarkersAddFlow(m->markers, m->stream, -1 / PetscSqr(m->fluid->grid->h), F, U, past->made, &more));
-    PetscCall(MobilityAddInner(m, m->fluid->alpha, PETSC_TRUE));
+    PetscCall(MobilityAddInner(m, INNER_ADD, m->fluid->alpha));
     PetscCall(VecAXPY(m->flow, MobilityGridPart(m, m->fluid->alpha), U));
     m->measures.divergence += more.divergence;
     m->measures.slip += more.slip;

@@ -45,7 +45,6 @@ struct _p_Mobility {
   Vec flow;                   /* E u of the step so far, in fluid with inertia */
   StreamMeasures measures;    /* measures of u of the step so far */
   InnerFluid inner;           /* of free bodies in fluid with inertia; else NULL */
-  PetscReal *rate[2];         /* [3 free] INT_inside R^T Du/Dt of the last MobilityApply, and of the step so far */
   Vec sum, field;             /* work: a flow and its velocity on the grid; NULL without inner fluid */
 };
 

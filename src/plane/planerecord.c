@@ -1,5 +1,4 @@
 /* What a step in the plane amounts to in numbers: the columns of series.csv. */
-#include "bodies/freebodies.h"
 #include "plane/plane.h"
 #include "scheme/films.h"
 #include "scheme/pressuredrop.h"
@@ -114,8 +113,8 @@ static PetscErrorCode ObstaclesRow(Scheme s, PetscReal values[]) {
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt curves = o->layout->bodies, count = ObstacleRowCount(&s->scene->obstacles);
   PetscCall(PetscMalloc2(curves, &load, 3 * o->free->M, &q));
-  PetscCall(FreeBodiesRates(o, s->state.solid, q));
   PetscCall(VecGetArrayRead(s->state.solid, &F));
+  PetscCall(LayoutGather(o->free, 3, F + 2 * o->layout->n, q));
   PetscCall(ObstaclesLoads(o, StateInstant(&s->state), F, load));
   PetscCall(VecRestoreArrayRead(s->state.solid, &F));
   PetscCall(ContainerLoads(s, load));

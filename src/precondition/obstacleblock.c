@@ -172,16 +172,11 @@ static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the factor is of another place of bodies or of another time step. */
-static PetscBool IsObstacleFactorOld(ObstacleBlock b) {
-  return b->obstacles->moving || b->age.made_for != b->coupling->fluid->alpha ? PETSC_TRUE : PETSC_FALSE;
-}
-
 PetscErrorCode ObstacleBlockSetUp(ObstacleBlock b, PetscBool *failed) {
+  const PetscReal alpha = b->coupling->fluid->alpha;
   PetscFunctionBeginUser;
-  if (IsObstacleFactorOld(b) &&
-      AgeIsOver(&b->age, b->coupling->fluid->alpha, OBSTACLE_STEP_RATIO, ObstacleRenewalCost(b)))
-    PetscCall(MakeObstacleFactor(b, failed));
+  if (!b->obstacles->moving && b->age.made_for == alpha) PetscFunctionReturn(PETSC_SUCCESS); /* it is no older */
+  if (AgeIsOver(&b->age, alpha, OBSTACLE_STEP_RATIO, ObstacleRenewalCost(b))) PetscCall(MakeObstacleFactor(b, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

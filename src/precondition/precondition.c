@@ -84,7 +84,7 @@ static PetscReal BlocksRenewalCost(Preconditioner p) {
   const Layout l = c->membrane->layout;
   const PetscReal n = l->M <= DENSE_TOGETHER ? l->M : (PetscReal)l->M / l->bodies, blocks = l->M / n;
   const PetscReal cells = c->fluid->grid->free ? 0 : (PetscReal)c->fluid->grid->n[0] * c->fluid->grid->n[1];
-  return AgeCost(blocks, n, blocks == 1 ? (PetscReal)BodiesObstacleMarkers(c->bodies) : 0, cells);
+  return AgeCost(blocks, n, blocks == 1 && p->solid ? (PetscReal)c->bodies->obstacles->layout->M : 0, cells);
 }
 
 /* Whether I + (v/a0) d/dt of a vesicle has moved by this part in its highest mode, n/2. */

@@ -53,7 +53,7 @@ static void ReducedBodies(Reduced s, const CoupledProblem *q, const PetscScalar 
   for (PetscInt k = 0; k < s->free; k++) rows[k] = (q ? q->load[k] : 0) - s->push[q != NULL][k];
   FreeBodiesSum(o, F, rows);
   for (PetscInt k = 0; m->inner && c->fluid->alpha > 0 && k < s->free; k++)
-    rows[k] += m->rate[q != NULL][first + k] - c->fluid->alpha * m->inner->mass[first + k] * rate[k];
+    rows[k] += m->inner->rate[q != NULL][first + k] - c->fluid->alpha * m->inner->mass[first + k] * rate[k];
 }
 
 /* The residual y of x in the equations of residual.h, scaled, where s->G has G and s->U has U (1) of x. With q NULL:

@@ -249,48 +249,35 @@ PetscErrorCode CoupledEstimate(Scheme s, PetscReal *error) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest |x - x*| on this rank, x* the extrapolation of a carried marker vector by `count` of them. */
-static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, const Vec states[], Vec x, PetscReal *largest) {
-  PetscReal star[BDF_STATES];
-  PetscFunctionBeginUser;
-  BDFGuess(count, d->history.step, star);
-  PetscCall(HistorySum(count, star, 1, states, d->Y));
-  PetscCall(LargestDifference(s, x, d->Y, largest));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Free bodies: largest = max(largest, that of places, or (rates) of velocities q at the farthest markers). */
-static PetscErrorCode MissBodies(Scheme s, Coupled *d, PetscInt count, PetscBool rates, PetscReal *largest) {
+/* What the extrapolation by `count` states misses on this rank, the largest: of markers and of free bodies' places, or
+   (rates) of their velocities. */
+static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, PetscBool rates, PetscReal *largest) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  const Vec *guess = d->history.guess;
+  const History *h = &d->history;
   PetscReal star[BDF_STATES];
   PetscFunctionBeginUser;
+  BDFGuess(count, h->step, star);
+  PetscCall(HistorySum(count, star, 1, rates ? h->U : h->X, d->Y));
+  PetscCall(LargestDifference(s, rates ? d->next.U : d->next.X, d->Y, largest));
   if (!d->place) PetscFunctionReturn(PETSC_SUCCESS);
-  BDFGuess(count, d->history.step, star);
-  PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), guess[rates]));
-  PetscCall(VecAXPY(guess[rates], -1, rates ? d->next.solid : d->next.place));
-  if (rates) PetscCall(VecSet(guess[0], 0));
-  if (rates) PetscCall(FreeBodiesMove(o, guess[1], 1, guess[0]));
-  PetscCall(FreeBodiesFarthest(o, guess[0], largest));
+  PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), h->guess[rates]));
+  PetscCall(VecAXPY(h->guess[rates], -1, rates ? d->next.solid : d->next.place));
+  if (rates) PetscCall(VecSet(h->guess[0], 0));
+  if (rates) PetscCall(FreeBodiesMove(o, h->guess[1], 1, h->guess[0]));
+  PetscCall(FreeBodiesFarthest(o, h->guess[0], largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Order 3 where the motion is so smooth that three states tell the next one better than two; and a guess by as
    many states as would have told this one's velocity best, of those whose velocity is known. */
 static PetscErrorCode ChooseNext(Scheme s, Coupled *d) {
-  const History *h = &d->history;
   const PetscInt solved = SchemeIsSmooth(s) ? d->history.solved : 0;
   StepPlan *next = &d->next_plan;
   PetscReal miss[BDF_MOST - 1 + BDF_STATES] = {0}, *of_U = miss + BDF_MOST - 1;
   PetscFunctionBeginUser;
-  for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++) {
-    PetscCall(Miss(s, d, k, h->X, d->next.X, &miss[k - 2]));
-    PetscCall(MissBodies(s, d, k, PETSC_FALSE, &miss[k - 2]));
-  }
-  for (PetscInt k = 1; k <= solved; k++) {
-    PetscCall(Miss(s, d, k, h->U, d->next.U, &of_U[k - 1]));
-    PetscCall(MissBodies(s, d, k, PETSC_TRUE, &of_U[k - 1]));
-  }
+  for (PetscInt k = 2; k <= BDF_MOST && d->history.n == BDF_MOST && s->scene->scheme.order > 2; k++)
+    PetscCall(Miss(s, d, k, PETSC_FALSE, &miss[k - 2]));
+  for (PetscInt k = 1; k <= solved; k++) PetscCall(Miss(s, d, k, PETSC_TRUE, &of_U[k - 1]));
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, miss, BDF_MOST - 1 + BDF_STATES, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   const PetscReal gain = d->order == 3 && !s->policy.adaptive ? KEPT : SMOOTH;
@@ -347,8 +334,7 @@ static PetscErrorCode Overshot(Scheme s, Coupled *d, PetscBool *overshot) {
   PetscFunctionBeginUser;
   *overshot = PETSC_FALSE;
   if (d->order == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Miss(s, d, 1, d->history.X, d->next.X, &began));
-  PetscCall(MissBodies(s, d, 1, PETSC_FALSE, &began));
+  PetscCall(Miss(s, d, 1, PETSC_FALSE, &began));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &began, 1, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   PetscCall(CoupledEstimate(s, &error));
   *overshot = error > FAR * began / SmallestRadius(s) && error > STILL ? PETSC_TRUE : PETSC_FALSE;
