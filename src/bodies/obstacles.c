@@ -26,6 +26,7 @@ static PetscErrorCode Normals(Obstacles o, PetscInt b, PetscReal *length) {
 /* One curve's middle and mean edge, and its motion. */
 static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt b) {
   const PetscInt first = o->layout->start[b], n = LayoutCount(o->layout, b);
+  const PetscBool free = own->free.is[b];
   BodyMotion *m = &o->motion[b];
   PetscReal length;
   PetscFunctionBeginUser;
@@ -35,9 +36,9 @@ static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt 
   m->frequency = own->frequency;
   for (int c = 0; c < 2; c++) m->velocity[c] = own->velocity[2 * b + c];
   m->rotation = own->turn[b];
-  m->turned = own->moving && m->rotation != 0 && !own->circles ? PETSC_TRUE : PETSC_FALSE;
-  m->carried = m->turned || (own->moving && (m->velocity[0] != 0 || m->velocity[1] != 0)) ? PETSC_TRUE : PETSC_FALSE;
-  if (m->carried) o->moving = PETSC_TRUE;
+  m->turned = !own->circles && (free || (own->moving && m->rotation != 0));
+  m->carried = free || m->turned || (own->moving && (m->velocity[0] != 0 || m->velocity[1] != 0));
+  o->moving = o->moving || m->carried;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,8 +80,6 @@ static PetscErrorCode ObstaclesFree(Obstacles o, Scene scene) {
       load[c] = ListEntry(&own->force, 2, b, c) + (o->density[count] - 1) * area * scene->gravity.g.v[c];
     load[2] = ListEntry(&own->torque, 1, b, 0);
     m->free = ++count;
-    m->carried = o->moving = PETSC_TRUE;
-    m->turned = scene->obstacles.circles ? PETSC_FALSE : PETSC_TRUE;
     for (PetscMPIInt r = 0; r <= l->size; r++) body[r] += b < l->body[r];
   }
   PetscCall(LayoutCreate(l->comm, own->count, start, body, &o->free));

@@ -64,19 +64,15 @@ static PetscErrorCode PlaceAgain(Scheme s, PetscReal a0, Instant at, Vec X, cons
 #define LATEST 1e3 /* times the present one: of an attempt at a step, so not much later */
 
 static PetscErrorCode RecallBlock(Scheme s, const PetscReal memory[]) {
+  const Obstacles o = s->coupling->bodies->obstacles;
   char message[PETVES_MAX_MESSAGE];
   Instant at = {0};
-  PetscScalar *place;
   PetscFunctionBeginUser;
   if (!OlderBlock(s) || memory[1] < 0) PetscFunctionReturn(PETSC_SUCCESS);
   at.t = memory[0];
-  if (s->state.place) {
-    PetscCall(VecDuplicate(s->state.place, &at.place));
-    PetscCall(VecGetArray(at.place, &place));
-    PetscCall(PetscArraycpy(place, memory + OBSTACLE_BLOCK_MEMORY, 3 * s->coupling->bodies->obstacles->free->M));
-    PetscCall(VecRestoreArray(at.place, &place));
-  }
-  PetscCall(ObstaclesCheck(s->coupling->bodies->obstacles, s->scene, at, message));
+  if (s->state.place)
+    PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, 3 * o->free->M, memory + OBSTACLE_BLOCK_MEMORY, &at.place));
+  PetscCall(ObstaclesCheck(o, s->scene, at, message));
   PetscCheck(memory[0] >= 0 && memory[0] <= LATEST * (s->state.t + s->state.dt) && !*message, s->scene->comm,
              PETSC_ERR_USER_INPUT, "-restart %s: its solver's memory is of time %g; allowed: a checkpoint.h5 of petves",
              s->scene->output.restart, (double)memory[0]);
