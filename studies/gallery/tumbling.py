@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from petves.measures import half_periods, turned_angle
+from petves.measures import half_periods
 from petves.theory import ellipse_axes
 from petves.views.plot import dress, new_figure, save_figure
 from studies.common.engine import Case, Results, Series
@@ -27,8 +27,6 @@ ABOVE = {
     0.9: (5.45, 5.55, 5.65, 5.75),
 }
 """Ratios not far above it, by reduced area."""
-LOOKED = tuple((0.7, chi, ratio) for chi in (1, 30, 100) for ratio in (3.5, 4, 4.5, 5.5))
-LOOKED += tuple((0.9, chi, ratio) for chi in (30, 200) for ratio in (5.3, 5.6, 6.0))
 
 
 def shape(reduced_area: float, chi: float) -> str:
@@ -59,19 +57,6 @@ def long_period(reduced_area: float, ratio: float) -> Case:
         f"{shape(reduced_area, 10)} -vesicle_viscosity_ratio {ratio} -time_step 0.1 -time_end 200 -output_every 100"
     )
     return case(f"critical_{reduced_area}_{ratio}", "tumbling", changes, measure)
-
-
-def looked(reduced_area: float, chi: float, ratio: float) -> Case:
-    """Return a vesicle at another chi: how far it turns, and its angle in the second half."""
-
-    def measure(series: Series, folder: Path) -> dict[str, object]:
-        late = series["time"] > series["time"][-1] / 2
-        turned = turned_angle(series["inclination"])
-        return {"turns": -turned[-1] / np.pi, "swing": np.ptp(turned[late]) / np.pi}
-
-    changes = f"{shape(reduced_area, chi)} -vesicle_viscosity_ratio {ratio} -vesicle_markers 61 -time_end 80"
-    changes += " -vesicle_allow_close_markers true"
-    return case(f"look_{reduced_area}_{chi}_{ratio}", "tumbling", changes, measure)
 
 
 def critical_ratio(half: dict[float, float]) -> float:
@@ -149,14 +134,11 @@ def fill(results: Results) -> Values:
     _picture(folder / "tumbling_ratio.png", made, found)
     rows = [[v, f"{found[v]:.3f}", CRITICAL.get(v, ""), f"{keller_skalak_critical(v):.3f}"] for v in found]
     off = [abs(ours / theirs - 1) for key, known in EXACT.items() for ours, theirs in zip(made[key]["half"], known)]
-    seen = [results.get(looked(*key)) for key in LOOKED]
     return {
         "tumbling_periods": _periods(made),
         "tumbling_critical": [["V", "petves", "boundary integral", "Keller, Skalak"], *rows],
         "period_off": f"{100 * max(off):.2f}",
-        "looked": str(len(seen)),
-        "swinging": str(sum(one["turns"] < 0.6 and one["swing"] > 0.02 for one in seen)),
-        "seconds": seconds(*made.values(), *(one for ones in slow.values() for one in ones.values()), *seen),
+        "seconds": seconds(*made.values(), *(one for ones in slow.values() for one in ones.values())),
     }
 
 
