@@ -14,13 +14,8 @@ T = TypeVar("T")
 
 #: What Python, NumPy and h5py raise at a file that is not as a run writes it.
 BROKEN = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
-PAUSES = (
-    0.01,
-    0.02,
-    0.05,
-    0.1,
-    0.2,
-)  # seconds before a file is read again: of a run that goes on it may be half written
+#: Seconds before a file is read again: of a run that goes on it may be half written.
+PAUSES = (0.01, 0.02, 0.05, 0.1, 0.2)
 
 
 def read_file(path: Path, read: Callable[[Path], T], hint: str = "") -> T:

@@ -188,10 +188,8 @@ class Run(RunFolder):
     obstacle_force: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
     obstacle_kinds: list[str] = field(default_factory=list)
     tracers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
-    columns = (
-        "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall nsolve"
-    )
-    columns += " tension_its bending_its coupled_its"
+    columns = "step time energy_kinetic energy_bending area_error length_error div_max inclination frequency wall"
+    columns += " nsolve tension_its bending_its coupled_its"
 
     @functools.cached_property
     def periods(self) -> tuple[float, float]:
