@@ -118,14 +118,14 @@ def test_one_rank_or_three(steps, tmp_path):
 
 def test_repulsion_keeps_a_film(tmp_path):
     """Two vesicles that extension presses together, with and without repulsion, which costs no iterations."""
-    pair = f"{SPACE} -sphere_degree 6 -flow_type extension -vesicle_axis 0,1,0 -vesicle_reduced_volume 0.98 -vesicle_count 2"
-    pair += " -vesicle_center 0,1.1,0,0.1,-1.5,0 -time_step 0.1 -time_end 2"
+    pair = f"{SPACE} -sphere_degree 4 -flow_type extension -vesicle_axis 0,1,0 -vesicle_reduced_volume 0.98 -vesicle_count 2"
+    pair += " -vesicle_center 0,1.1,0,0.1,-1.4,0 -time_step 0.1 -time_end 1"
     push = f"{pair} -contact_repulsion 50 -contact_repulsion_range 0.2"
     bare, pushed, three = (
         run_petves(tmp_path / name, options, ranks).series
         for name, options, ranks in (("bare", pair, 1), ("pushed", push, 1), ("three", push, 3))
     )
     assert pushed["gap"].min() > bare["gap"].min() + 0.015
-    assert (bare["energy_contact"] == 0).all() and (np.diff(pushed["energy_contact"][4:18]) > 0).all()
+    assert (bare["energy_contact"] == 0).all() and (np.diff(pushed["energy_contact"][4:]) > 0).all()
     assert pushed["coupled_its"].max() < bare["coupled_its"].max() + 3
     assert np.allclose(pushed["energy_contact"], three["energy_contact"], rtol=1e-5)
