@@ -100,7 +100,7 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   SceneSpaceScales(s, R0, &bending, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0[0] * R0[0] * R0[0]);
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0[0] * R0[0]);
-  if (s->repulsion.range == 0) s->repulsion.range = R0[1] / 10;
+  if (s->repulsion.stress > 0 && s->repulsion.range == 0) s->repulsion.range = R0[1] / 10;
   PetscReal rate = FlowShearRate(&s->flow);
   PetscCall(Flow3Check(s->comm, &s->flow, count, &s->vesicles.center, R0[0], s->time.end, &rate));
   if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(rate, relaxation);
