@@ -79,6 +79,18 @@ PetscErrorCode DenseProduct(PetscBool transpose, PetscInt m, PetscInt n, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode DenseGram(PetscInt n, PetscInt k, const PetscReal A[], PetscReal C[]) {
+  const PetscReal one = 1, zero = 0;
+  PetscBLASInt columns, rows;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &columns));
+  PetscCall(PetscBLASIntCast(k, &rows));
+  PetscCallBLAS("BLASsyrk", BLASsyrk_("U", "T", &columns, &rows, &one, A, &rows, &zero, C, &columns));
+  for (PetscInt l = 0; l < n; l++)
+    for (PetscInt m = 0; m < l; m++) C[m * n + l] = C[l * n + m];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void DenseAddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]) {
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt k = 0; k < n; k++)

@@ -38,6 +38,9 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode DenseProductWithin(PetscBool transpose, DenseView A, DenseView B, PetscReal beta,
                                                PetscReal C[], PetscInt apart);
 
+/* DenseGram - C[n][n] = A^T A, A (k x n). */
+PETSC_EXTERN PetscErrorCode DenseGram(PetscInt n, PetscInt k, const PetscReal A[], PetscReal C[]);
+
 /* DenseAddCirculant - A[2n][2n], columns lda apart, += a circulant map of n points that treats both components alike,
    by first[2n], what the map makes of a unit of the first component at point 0. Not collective. */
 PETSC_EXTERN void DenseAddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]);

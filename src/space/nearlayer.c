@@ -175,7 +175,7 @@ PetscErrorCode NearPairCreate(Sphere sphere, NearTables *t, PetscReal spacing, c
   for (PetscInt k = 1; !last; k++, spacing /= 2, width /= 2) {
     const NearLevel *before = &pair->level[k - 1];
     NearLevel *l = &pair->level[k];
-    if (!t->grid[k].n) PetscCall(SphereGridCreate(((sphere->p + 1) << k) - 1, &t->grid[k]));
+    if (!t->grid[k].n) PetscCall(SphereGridCreate(((sphere->p + 1) << k) - 1, GRID_WHOLE, &t->grid[k]));
     for (int side = 0; side < 2; side++)
       PetscCall(NearPatchRefine(sphere, &before->patch[side], REACH * width + CELL * spacing, k, &t->grid[k], c[side],
                                 &l->patch[side]));

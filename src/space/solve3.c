@@ -16,8 +16,8 @@ PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
 static PetscErrorCode SpaceForces(Space s, const PetscScalar x[]) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(Vesicle3Force(s->vesicle[v], x + 4 * v * s->count, s->work.F + v * s->size));
-    for (PetscInt k = 0; k < s->size; k++) s->work.V[v * s->size + k] = x[4 * v * s->count + k] / s->vesicle[v]->a0;
+    PetscCall(Vesicle3Force(s->vesicle[v], x + v * s->unknowns, s->work.F + v * s->size));
+    for (PetscInt k = 0; k < s->size; k++) s->work.V[v * s->size + k] = x[v * s->unknowns + k] / s->vesicle[v]->a0;
   }
   if (s->cross) PetscCall(CrossLayerAddStiffness(s->cross, s->work.V, s->work.F));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,14 +36,13 @@ static PetscErrorCode SpaceMult(Mat A, Vec X, Vec Y) {
   PetscCall(SpaceMobility(s, s->work.F, s->work.V));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = -s->work.V[k];
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3Rows(s->vesicle[v], x + 4 * v * s->count, s->work.V + v * s->size, y + 4 * v * s->count));
+    PetscCall(Vesicle3Rows(s->vesicle[v], x + v * s->unknowns, s->work.V + v * s->size, y + v * s->unknowns));
   PetscCall(VecRestoreArrayWrite(Y, &y));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SpaceApplyFactors(PC pc, Vec r, Vec z) {
-  const PetscInt each = 16;
   Space s;
   PetscScalar *x;
   PetscFunctionBeginUser;
@@ -51,14 +50,14 @@ static PetscErrorCode SpaceApplyFactors(PC pc, Vec r, Vec z) {
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &x));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(DenseSolve(4 * s->count, s->factor + v * each * s->count * s->count, s->pivot + 4 * v * s->count,
-                         PETSC_FALSE, 1, x + 4 * v * s->count));
+    PetscCall(DenseSolve(s->unknowns, s->factor + v * s->unknowns * s->unknowns, s->pivot + v * s->unknowns,
+                         PETSC_FALSE, 1, x + v * s->unknowns));
   PetscCall(VecRestoreArray(z, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpaceSolverCreate(Space s) {
-  const PetscInt n = 4 * s->count;
+  const PetscInt n = s->unknowns;
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(
@@ -96,7 +95,7 @@ PetscErrorCode SpaceSolverDestroy(Space s) {
 
 /* Factors of the vesicles where they are placed; report.failure when one is singular. */
 static PetscErrorCode SpaceMakeFactors(Space s) {
-  const PetscInt n = 4 * s->count;
+  const PetscInt n = s->unknowns;
   int good = 1;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) {
@@ -137,7 +136,7 @@ PetscErrorCode SpaceRecall(Space s) {
 
 /* b = targets - rows of u_inf - M known. V becomes this velocity. */
 static PetscErrorCode SpaceRightHandSide(Space s) {
-  const PetscInt n = 4 * s->count;
+  const PetscInt n = s->unknowns;
   PetscScalar *b;
   PetscReal *y;
   PetscFunctionBeginUser;

@@ -30,9 +30,10 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   s->share = (VesicleShare){
       .comm = comm, .vesicles = vesicles, .first = first, .own = vesicles * (rank + 1) / ranks - first};
   s->setting = *setting;
-  PetscCall(SphereCreate(setting->p, &s->sphere));
+  PetscCall(SphereCreate(setting->p, setting->symmetry, &s->sphere));
   s->count = s->sphere->count;
-  s->size = 3 * s->count;
+  s->size = s->sphere->size;
+  s->unknowns = s->size + s->count;
   PetscCall(PetscCalloc1(s->share.own, &s->vesicle));
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(
@@ -132,7 +133,7 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     if (!done) good = 0;
     PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
     PetscCall(s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u));
-    PetscCall(SphereTableProject(&s->sphere->fine, s->count, 3, u, s->work.background + v * s->size));
+    PetscCall(SphereFieldProject(&s->sphere->fine, u, s->work.background + v * s->size));
     for (PetscInt k = 0; k < s->size; k++)
       if (PetscIsInfOrNanReal(s->work.background[v * s->size + k])) finite = 0;
     PetscCall(Vesicle3Velocity(vesicle, s->work.background + v * s->size));
@@ -154,7 +155,7 @@ static PetscErrorCode SpaceGuess(Space s, const BDF *b) {
   for (int j = 1; j < BDF_MOST; j++) sigma[j] = s->old[j - 1].sigma;
   PetscCall(VecGetArrayWrite(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscScalar *Q = x + 4 * v * s->count;
+    PetscScalar *Q = x + v * s->unknowns;
     for (PetscInt k = 0; k < s->size; k++)
       Q[k] = b->a0 * (s->work.Xstar[v * s->size + k] - s->work.Xhat[v * s->size + k]);
     for (PetscInt k = 0; k < s->count; k++) {
@@ -177,7 +178,7 @@ static PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
     PetscReal sum = 0;
     for (PetscInt k = 0; k < s->size; k++) {
       const PetscInt at = v * s->size + k;
-      const PetscReal new = s->work.Xhat[at] + x[4 * v * s->count + k] / a0;
+      const PetscReal new = s->work.Xhat[at] + x[v * s->unknowns + k] / a0;
       sum += PetscSqr(new - s->work.Y[at]);
       s->work.Y[at] = new;
     }
@@ -234,7 +235,7 @@ static PetscErrorCode SpaceTakeSolution(Space s) {
   PetscCall(PetscArraycpy(s->state.U, s->work.V, s->share.own * s->size));
   PetscCall(VecGetArrayRead(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(PetscArraycpy(s->state.sigma + v * s->count, x + 4 * v * s->count + s->size, s->count));
+    PetscCall(PetscArraycpy(s->state.sigma + v * s->count, x + v * s->unknowns + s->size, s->count));
   PetscCall(VecRestoreArrayRead(s->x, &x));
   s->state.solved = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -16,7 +16,8 @@ typedef PetscErrorCode (*Flow3)(const void *context, PetscReal t, PetscInt n, co
 
 /* The caller fills it in before SpaceCreate. */
 typedef struct {
-  PetscInt p;      /* degree of the harmonics */
+  PetscInt p; /* degree of the harmonics */
+  SphereSymmetry symmetry;
   PetscInt order;  /* in time */
   PetscInt newton; /* Newton steps on the bending energy within a step, 1 or 2 */
   PetscReal rtol;  /* default of -coupled_ksp_rtol */
@@ -39,16 +40,16 @@ typedef struct {
   PetscInt step;
   PetscReal t, dt_last; /* dt_last: the step, or its last part, that led to it; 0 at the start */
   PetscBool solved;     /* U and sigma are those of a solve */
-  PetscReal *X, *U;     /* [own][3 count] */
+  PetscReal *X, *U;     /* [own][size] */
   PetscReal *sigma;     /* [own][count] */
 } SpaceState;
 
-/* Arrays [own][3 count] of the step under way: X*, Xhat, the iterate Y, u_inf at X*, forces and velocities. */
+/* Arrays [own][size] of the step under way: X*, Xhat, the iterate Y, u_inf at X*, forces and velocities. */
 typedef struct {
   PetscReal *Xstar, *Xhat, *Y, *background, *F, *V;
 } SpaceWork;
 
-/* What the factors were made for, of the own vesicles: X* [own][3 count], the tension that pulled [own][count]. */
+/* What the factors were made for, of the own vesicles: X* [own][size], the tension that pulled [own][count]. */
 typedef struct {
   PetscReal a0; /* 0: none */
   PetscReal *X, *sigma;
@@ -59,7 +60,8 @@ struct _p_Space {
   VesicleShare share;
   SpaceSetting setting;
   Sphere sphere;
-  PetscInt count, size; /* harmonics, 3 count */
+  PetscInt count, size; /* coefficients of a tension, of a field */
+  PetscInt unknowns;    /* size + count */
   Vesicle3 *vesicle;    /* [own] */
   CrossLayer cross;     /* NULL: one vesicle */
   SpaceState state, old[BDF_MOST - 1];
@@ -72,13 +74,13 @@ struct _p_Space {
   Mat A;
   KSP ksp;
   Vec x, b;            /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
-  PetscReal *factor;   /* [own][4 count][4 count] */
-  PetscBLASInt *pivot; /* [own][4 count] */
+  PetscReal *factor;   /* [own][unknowns][unknowns] */
+  PetscBLASInt *pivot; /* [own][unknowns] */
   Age age;             /* of the factors */
   SpaceFactors made;
 };
 
-/* SpaceCreate - vesicles of the shapes X[vesicles][3 count] with their materials [vesicles] at time 0. Collective.
+/* SpaceCreate - vesicles of the shapes X[vesicles][size] with their materials [vesicles] at time 0. Collective.
    Errors: memory. */
 PETSC_EXTERN PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt vesicles,
                                         const Vesicle3Setting material[], const PetscReal X[], Space *space);
@@ -116,7 +118,7 @@ PETSC_EXTERN PetscInt SpaceArrays(Space space, SpaceArray array[SPACE_ARRAYS]);
 /* SpaceRecall - the factors of a run that goes on, made again for what they were made for, space->made. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
 
-/* SpaceMobility - V[own][3 count] = M F of the single layers of all vesicles where they have been placed. Collective.
+/* SpaceMobility - V[own][size] = M F of the single layers of all vesicles where they have been placed. Collective.
  */
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
 

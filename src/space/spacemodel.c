@@ -31,7 +31,7 @@ static PetscErrorCode SpaceMeasureMotion(Surface at, const ShapeMoments *m, cons
   PetscReal *u, *tension, turned = 0, inertia = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(3 * n, &u, n, &tension));
-  PetscCall(SphereTableValues(&at->sphere->fine, HARMONIC, count, 3, U, u));
+  PetscCall(SphereFieldValues(&at->sphere->fine, HARMONIC, U, u));
   PetscCall(SphereTableValues(&at->sphere->fine, HARMONIC, count, 1, sigma, tension));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal dA = at->sphere->fine.grid.weight[i] * at->J[i];
@@ -73,7 +73,7 @@ static PetscErrorCode SpaceMeasureVesicle(Space s, PetscInt v, PetscReal row[]) 
   const PetscReal *axis = m.direction[2], side = axis[0] < 0 ? -1 : 1;
   row[SPACE_INCLINATION] = PetscAtan2Real(side * axis[1], side * axis[0]);
   row[SPACE_ELEVATION] = PetscAsinReal(PetscClipInterval(side * axis[2], -1, 1));
-  row[SPACE_TAIL] = ShapeTail(s->sphere->p, X);
+  row[SPACE_TAIL] = ShapeTail(s->sphere, X);
   PetscCall(SpaceMeasureMotion(at, &m, s->state.U + v * s->size, s->state.sigma + v * s->count, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

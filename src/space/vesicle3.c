@@ -6,7 +6,7 @@
 #define LEAST_MOTION 0.01   /* of the largest: rigid motions that change the shape less, squared, are not fitted */
 
 PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, const PetscReal X[], Vesicle3 *out) {
-  const PetscInt count = sphere->count, size = 3 * count;
+  const PetscInt count = sphere->count, size = sphere->size, n = size + count;
   Vesicle3 v;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&v));
@@ -14,16 +14,17 @@ PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, con
   v->setting = *setting;
   v->count = count;
   v->size = size;
+  v->unknowns = n;
   PetscCall(SurfaceCreate(sphere, &v->at));
   PetscCall(SurfaceCreate(sphere, &v->about));
   PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
   v->area = v->at->area;
   v->volume = v->at->volume;
-  PetscCall(PetscMalloc3(size * size, &v->M, 4 * count * size, &v->rows, 4 * count * size, &v->columns));
+  PetscCall(PetscMalloc3(size * size, &v->M, n * size, &v->rows, n * size, &v->columns));
   PetscCall(PetscCalloc3(size * size, &v->pull, size, &v->clean, size, &v->known));
   if (setting->ratio != 1) PetscCall(PetscMalloc2(size * size, &v->inverse, size, &v->pivot));
   for (PetscInt k = 0; k < size; k++)
-    v->clean[k] = setting->label_rate * PetscPowRealInt((PetscReal)HarmonicsDegree(k % count) / sphere->p, 4);
+    v->clean[k] = setting->label_rate * PetscPowRealInt((PetscReal)sphere->degree[k] / sphere->p, 4);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,9 +66,9 @@ PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscRea
   PetscCall(SurfaceNormals(v->at, N));
   PetscCall(SurfaceAreaRows(v->at, A));
   for (PetscInt l = 0; l < size; l++) {
-    for (PetscInt k = 0; k < size; k++) v->rows[4 * count * l + k] = -N[size * l + k];
+    for (PetscInt k = 0; k < size; k++) v->rows[v->unknowns * l + k] = -N[size * l + k];
     for (PetscInt k = 0; k < count; k++) {
-      v->rows[4 * count * l + size + k] = -A[count * l + k];
+      v->rows[v->unknowns * l + size + k] = -A[count * l + k];
       v->columns[size * (size + k) + l] = A[count * l + k];
     }
   }
@@ -88,7 +89,7 @@ static PetscErrorCode Vesicle3Weigh(Vesicle3 v) {
     const PetscReal *X = s->D[HARMONIC] + i, pressure = w[0] * X[0] + w[1] * X[s->n] + w[2] * X[2 * s->n];
     for (int d = 0; d < 3; d++) f[d * s->n + i] = pressure * s->J[i] * s->normal[d * s->n + i];
   }
-  PetscCall(SphereTableProject(&s->sphere->fine, v->count, 3, f, c));
+  PetscCall(SphereFieldProject(&s->sphere->fine, f, c));
   for (PetscInt k = 0; k < v->size; k++) v->known[k] -= c[k];
   PetscCall(PetscFree2(f, c));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -126,7 +127,7 @@ PetscErrorCode Vesicle3AddKnown(Vesicle3 v, const PetscReal G[]) {
 
 PetscErrorCode Vesicle3Force(Vesicle3 v, const PetscReal x[], PetscReal F[]) {
   PetscFunctionBeginUser;
-  PetscCall(DenseProduct(PETSC_FALSE, v->size, 1, 4 * v->count, v->columns, x, F));
+  PetscCall(DenseProduct(PETSC_FALSE, v->size, 1, v->unknowns, v->columns, x, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -138,7 +139,7 @@ PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscReal U[]) {
 
 /* y[size] += scale (1 - P_n) w. */
 static PetscErrorCode Vesicle3AddTangential(Vesicle3 v, PetscReal scale, const PetscReal w[], PetscReal y[]) {
-  const DenseView minus_normals = {.a = v->rows, .rows = v->size, .columns = v->size, .apart = 4 * v->count};
+  const DenseView minus_normals = {.a = v->rows, .rows = v->size, .columns = v->size, .apart = v->unknowns};
   PetscReal *scaled;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(v->size, &scaled));
@@ -159,7 +160,7 @@ static void Vesicle3CleanLabels(Vesicle3 v, const PetscReal x[], PetscReal y[]) 
 PetscErrorCode Vesicle3Rows(Vesicle3 v, const PetscReal x[], const PetscReal U[], PetscReal y[]) {
   PetscReal *cleaned;
   PetscFunctionBeginUser;
-  PetscCall(DenseProduct(PETSC_FALSE, 4 * v->count, 1, v->size, v->rows, U, y));
+  PetscCall(DenseProduct(PETSC_FALSE, v->unknowns, 1, v->size, v->rows, U, y));
   if (!x) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(v->size, &cleaned));
   Vesicle3CleanLabels(v, x, cleaned);
@@ -174,10 +175,11 @@ PetscErrorCode Vesicle3Rows(Vesicle3 v, const PetscReal x[], const PetscReal U[]
 static PetscErrorCode Vesicle3FitRigid(Vesicle3 v, const PetscReal U[], PetscReal X0[3], PetscReal q[6]) {
   const Surface s = v->at;
   const PetscInt n = s->n;
+  const PetscBool revolved = (PetscBool)(s->sphere->symmetry == SPHERE_REVOLVED);
   PetscReal *u, D[36] = {0}, l[6], b[6] = {0};
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * n, &u));
-  PetscCall(SphereTableValues(&s->sphere->fine, HARMONIC, v->count, 3, U, u));
+  PetscCall(SphereFieldValues(&s->sphere->fine, HARMONIC, U, u));
   for (int d = 0; d < 3; d++) {
     X0[d] = 0;
     for (PetscInt i = 0; i < n; i++)
@@ -193,6 +195,7 @@ static PetscErrorCode Vesicle3FitRigid(Vesicle3 v, const PetscReal U[], PetscRea
                  (s->D[HARMONIC][f * n + i] - X0[f]) * s->normal[e * n + i];
       normal += u[d * n + i] * s->normal[d * n + i];
     }
+    for (int j = 1; j < 6 && revolved; j++) m[j] = 0; /* of the turns of a meridian */
     for (int j = 0; j < 6; j++) {
       b[j] += dA * m[j] * normal;
       for (int k = 0; k < 6; k++) D[6 * j + k] += dA * m[j] * m[k];
@@ -215,6 +218,11 @@ static PetscErrorCode Vesicle3RigidPart(Vesicle3 v, const PetscReal Xstar[], con
   PetscReal X0[3], q[6];
   PetscFunctionBeginUser;
   PetscCall(Vesicle3FitRigid(v, U, X0, q));
+  if (v->at->sphere->symmetry == SPHERE_REVOLVED) { /* along the axis */
+    PetscCall(PetscArrayzero(w, v->size));
+    w[0] = one * q[0];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (int d = 0; d < 3; d++) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
     for (PetscInt k = 0; k < v->count; k++)
@@ -229,7 +237,7 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
   PetscReal *w, grown = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(v->size, &w));
-  PetscCall(PetscArrayzero(b, 4 * v->count));
+  PetscCall(PetscArrayzero(b, v->unknowns));
   Vesicle3CleanLabels(v, Xhat, w);
   PetscCall(Vesicle3AddTangential(v, -1, w, b));
   if (U) PetscCall(Vesicle3RigidPart(v, Xstar, U, w));
@@ -241,7 +249,7 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
 }
 
 PetscErrorCode Vesicle3Matrix(Vesicle3 v, PetscReal B[]) {
-  const PetscInt size = v->size, n = 4 * v->count;
+  const PetscInt size = v->size, n = v->unknowns;
   PetscReal *LM, trace = 0;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * size, &LM));
@@ -265,7 +273,7 @@ PetscErrorCode Vesicle3KeepVolume(Vesicle3 v, PetscReal X[]) {
   PetscCall(PetscMalloc1(v->size, &shift));
   for (int pass = 0; pass < 2; pass++) {
     PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
-    PetscCall(SphereTableProject(&v->at->sphere->fine, v->count, 3, v->at->normal, shift));
+    PetscCall(SphereFieldProject(&v->at->sphere->fine, v->at->normal, shift));
     for (PetscInt k = 0; k < v->size; k++) X[k] += shift[k] * (v->volume - v->at->volume) / v->at->area;
   }
   PetscCall(PetscFree(shift));

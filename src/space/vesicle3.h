@@ -1,7 +1,7 @@
 /* One vesicle in three dimensions within a step: its part of the coupled problem, as dense matrices between
    coefficients (docs/space.md).
 
-   Unknowns are x = (Q, sigma): Q[3 count] the velocity of the labels, X = Xhat + Q/a0, and the tension sigma[count].
+   Unknowns are x = (Q, sigma): Q[size] the velocity of the labels, X = Xhat + Q/a0, and the tension sigma[count].
    With X* the extrapolated shape, where everything stands, Y the shape about which bending is linearised (X*, or the
    iterate of a second Newton step), g and K_b the gradient and Gauss-Newton matrix of the bending energy there, K_s the
    pull of the last tension, and A the area rows,
@@ -30,14 +30,15 @@ typedef struct _p_Vesicle3 *Vesicle3;
 struct _p_Vesicle3 {
   Vesicle3Setting setting;
   PetscReal area, volume; /* of the first shape, which the membrane keeps */
-  PetscInt count, size;   /* harmonics, 3 count */
+  PetscInt count, size;   /* coefficients of the tension, of a field */
+  PetscInt unknowns;      /* size + count */
   Surface at;             /* X* */
   Surface about;          /* Y */
   PetscReal *M;           /* [size][size] own mobility */
   PetscReal *inverse;     /* [size][size] of (1 + ratio)/2 + (1 - ratio) D, factored; NULL where the ratio is 1 */
   PetscBLASInt *pivot;    /* [size] of it */
-  PetscReal *rows;        /* [size][4 count] L = -[P_n; A] */
-  PetscReal *columns;     /* [4 count][size] C */
+  PetscReal *rows;        /* [size][unknowns] L = -[P_n; A] */
+  PetscReal *columns;     /* [unknowns][size] C */
   PetscReal *pull;        /* [size][size] K_s */
   PetscReal *clean;       /* [size] gamma Lambda */
   PetscReal *known;       /* [size] */
@@ -60,20 +61,20 @@ PETSC_EXTERN PetscErrorCode Vesicle3Linearise(Vesicle3 vesicle, PetscReal a0, co
 /* Vesicle3AddKnown - known += G[size], the gradient of another energy. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3AddKnown(Vesicle3 vesicle, const PetscReal G[]);
 
-/* Vesicle3Force - F[size] = C x, x[4 count]. Vesicle3Velocity - U[size] becomes that of a membrane with this ratio of
-   viscosities from what equal ones would make, U := inverse U. Vesicle3Rows - y[4 count] = L U + what the rows have of
+/* Vesicle3Force - F[size] = C x, x[unknowns]. Vesicle3Velocity - U[size] becomes that of a membrane with this ratio of
+   viscosities from what equal ones would make, U := inverse U. Vesicle3Rows - y[unknowns] = L U + what the rows have of
    x alone (NULL: nothing). Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Force(Vesicle3 vesicle, const PetscReal x[], PetscReal F[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Velocity(Vesicle3 vesicle, PetscReal U[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Rows(Vesicle3 vesicle, const PetscReal x[], const PetscReal U[], PetscReal y[]);
 
-/* Vesicle3Target - b[4 count], the right-hand sides, without those of u_inf: the labels' rigid part by the last
+/* Vesicle3Target - b[unknowns], the right-hand sides, without those of u_inf: the labels' rigid part by the last
    velocity U[size] (NULL: none), and the target of the area. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Target(Vesicle3 vesicle, const PetscReal Xhat[], const PetscReal Xstar[],
                                            const PetscReal U[], PetscReal b[]);
 
-/* Vesicle3Matrix - B[4 count][4 count], the vesicle's own part of the problem: what y = Vesicle3Rows makes of x by U =
-   -M C x, with a small multiple of the identity in the tension's block. Not collective. */
+/* Vesicle3Matrix - B[unknowns][unknowns], the vesicle's own part of the problem: what y = Vesicle3Rows makes of x by U
+   = -M C x, with a small multiple of the identity in the tension's block. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Matrix(Vesicle3 vesicle, PetscReal B[]);
 
 /* Vesicle3KeepVolume - shift X[size] evenly along its normals until it has its volume; `at` is used. Not collective. */

@@ -63,6 +63,17 @@ PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode HarmonicsRevolve(PetscInt p, PetscInt n, const PetscReal table[], PetscReal out[]) {
+  PetscInt column = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt part = 0; part < 3; part++)
+    for (PetscInt l = part ? 1 : 0; l <= p; l++, column++) {
+      const PetscInt m = part == 2 ? -1 : part;
+      for (PetscInt i = 0; i < n; i++) out[column * n + i] = table[(l * l + l + m) * n + i] / (part ? PETSC_SQRT2 : 1);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void HarmonicsTurn(PetscInt p, PetscReal angle, PetscBool back, const PetscReal x[], PetscReal y[]) {
   for (PetscInt m = 0; m <= p; m++) {
     const PetscReal c = PetscCosReal(m * angle), s = back ? -PetscSinReal(m * angle) : PetscSinReal(m * angle);

@@ -23,6 +23,10 @@ enum { HARMONIC, HARMONIC_T, HARMONIC_P, HARMONIC_TT, HARMONIC_TP, HARMONIC_PP, 
 PETSC_EXTERN PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
                                         PetscInt parts, PetscReal table[]);
 
+/* HarmonicsRevolve - the columns that fields of bodies of revolution are made of: out[3p + 1][n], Y_(l, 0) of
+   table[count] [n], l = 0 .. p, then Y_(l, 1)/sqrt(2) and Y_(l, -1)/sqrt(2), l = 1 .. p. Not collective. */
+PETSC_EXTERN PetscErrorCode HarmonicsRevolve(PetscInt p, PetscInt n, const PetscReal table[], PetscReal out[]);
+
 /* HarmonicsTurn - coefficients of f(theta, phi + angle) from those of f, or (back) the transpose of this map, which is
    its inverse. x and y differ. Not collective. */
 PETSC_EXTERN void HarmonicsTurn(PetscInt p, PetscReal angle, PetscBool back, const PetscReal x[], PetscReal y[]);

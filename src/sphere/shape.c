@@ -39,6 +39,7 @@ PetscErrorCode ShapeMeasure(Surface s, ShapeMoments *m) {
   PetscReal second[9] = {0}, l[3];
   PetscFunctionBeginUser;
   (void)PetscArrayzero(m->center, 3);
+  const PetscBool revolved = (PetscBool)(s->sphere->symmetry == SPHERE_REVOLVED);
   for (int pass = 0; pass < 2; pass++)
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal dA = s->sphere->fine.grid.weight[i] * s->J[i];
@@ -48,10 +49,14 @@ PetscErrorCode ShapeMeasure(Surface s, ShapeMoments *m) {
         rn += r[d] * s->normal[d * n + i];
       }
       for (int d = 0; d < 3; d++) {
-        if (!pass) m->center[d] += dA * rn * r[d] / (4 * s->volume);
+        if (!pass && (d == 0 || !revolved)) m->center[d] += dA * rn * r[d] / (4 * s->volume);
         for (int e = 0; e < 3 && pass; e++) second[3 * d + e] += dA * rn * r[d] * r[e] / 5;
       }
     }
+  if (revolved) { /* of all turns of the meridian, on which z = 0 */
+    second[1] = second[3] = 0;
+    second[4] = second[8] = second[4] / 2;
+  }
   PetscCall(DenseEigen(3, second, l));
   for (int j = 0; j < 3; j++) {
     m->axis[j] = PetscSqrtReal(5 * l[j] / s->volume);
@@ -60,13 +65,12 @@ PetscErrorCode ShapeMeasure(Surface s, ShapeMoments *m) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal ShapeTail(PetscInt p, const PetscReal c[]) {
-  const PetscInt count = HarmonicsCount(p);
+PetscReal ShapeTail(Sphere sphere, const PetscReal c[]) {
   PetscReal tail = 0, all = 0;
-  for (PetscInt k = 0; k < 3 * count; k++) {
-    const PetscInt l = HarmonicsDegree(k % count);
+  for (PetscInt k = 0; k < sphere->size; k++) {
+    const PetscInt l = sphere->degree[k];
     if (l > 0) all += c[k] * c[k];
-    if (4 * l >= 3 * p) tail += c[k] * c[k];
+    if (4 * l >= 3 * sphere->p) tail += c[k] * c[k];
   }
   return PetscSqrtReal(tail / all);
 }

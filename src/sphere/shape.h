@@ -17,7 +17,7 @@ typedef struct {
   PetscReal direction[3][3]; /* unit vectors along them */
 } ShapeMoments;
 
-/* ShapeMeasure - where the surface has been placed. ShapeTail - of c[3][count]: the root mean square of the
+/* ShapeMeasure - where the surface has been placed. ShapeTail - of the field c[size]: the root mean square of the
    coefficients from three quarters of the degree on over that of all but the mean. Not collective. */
 PETSC_EXTERN PetscErrorCode ShapeMeasure(Surface surface, ShapeMoments *moments);
-PETSC_EXTERN PetscReal ShapeTail(PetscInt p, const PetscReal c[]);
+PETSC_EXTERN PetscReal ShapeTail(Sphere sphere, const PetscReal c[]);

@@ -2,20 +2,22 @@
 #include "numerics/blas.h"
 #include <petscdt.h>
 
-PetscErrorCode SphereGridCreate(PetscInt q, SphereGrid *g) {
-  const PetscInt around = 2 * q + 2;
+PetscErrorCode SphereGridCreate(PetscInt q, GridCover cover, SphereGrid *g) {
+  const PetscInt whole = 2 * q + 2, around = cover == GRID_WHOLE ? whole : cover == GRID_HALF ? q + 2 : 1;
   PetscReal *x, *w;
   PetscFunctionBeginUser;
   g->q = q;
+  g->around = around;
   g->n = (q + 1) * around;
   PetscCall(PetscMalloc3(g->n, &g->theta, g->n, &g->phi, g->n, &g->weight));
   PetscCall(PetscMalloc2(q + 1, &x, q + 1, &w));
   PetscCall(PetscDTGaussQuadrature(q + 1, -1, 1, x, w));
   for (PetscInt i = 0; i < g->n; i++) {
-    const PetscInt latitude = q - i / around;
+    const PetscInt latitude = q - i / around, longitude = i % around;
+    const PetscInt stands_for = cover == GRID_MERIDIAN ? whole : cover == GRID_HALF && longitude % (q + 1) ? 2 : 1;
     g->theta[i] = PetscAcosReal(x[latitude]);
-    g->phi[i] = 2 * PETSC_PI * (PetscReal)(i % around) / (PetscReal)around;
-    g->weight[i] = w[latitude] * 2 * PETSC_PI / (PetscReal)around;
+    g->phi[i] = 2 * PETSC_PI * (PetscReal)longitude / (PetscReal)whole;
+    g->weight[i] = w[latitude] * 2 * PETSC_PI * (PetscReal)stands_for / (PetscReal)whole;
   }
   PetscCall(PetscFree2(x, w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -27,14 +29,50 @@ PetscErrorCode SphereGridDestroy(SphereGrid *g) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, PetscInt parts, SphereTable *t) {
+/* Columns of a table of harmonics: those of a scalar first. */
+static PetscInt SphereColumns(SphereSymmetry symmetry, PetscInt p) {
+  return symmetry == SPHERE_WHOLE ? HarmonicsCount(p) : 3 * p + 1;
+}
+
+void FieldComponents(SphereSymmetry symmetry, PetscInt p, PetscInt n, const PetscReal part[], PetscInt which,
+                     FieldComponent component[3]) {
   const PetscInt count = HarmonicsCount(p);
+  for (int d = 0; d < 3; d++) {
+    FieldComponent *c = &component[d];
+    c->first = symmetry == SPHERE_WHOLE ? d * count : d ? p + 1 : 0;
+    c->columns = symmetry == SPHERE_WHOLE ? count : d ? p : p + 1;
+    c->part[which] = part + (symmetry == SPHERE_WHOLE || d == 0 ? 0 : p + 1 + (d - 1) * p) * n;
+  }
+}
+
+/* table[parts][columns][n] of the columns that fields of this symmetry need. */
+static PetscErrorCode SphereHarmonicsAt(SphereSymmetry symmetry, PetscInt p, PetscInt n, const PetscReal theta[],
+                                        const PetscReal phi[], PetscInt parts, PetscReal table[]) {
+  PetscReal *all;
+  PetscFunctionBeginUser;
+  if (symmetry == SPHERE_WHOLE) {
+    PetscCall(HarmonicsAt(p, n, theta, phi, parts, table));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc1(parts * HarmonicsCount(p) * n, &all));
+  PetscCall(HarmonicsAt(p, n, theta, phi, parts, all));
+  for (PetscInt part = 0; part < parts; part++)
+    PetscCall(HarmonicsRevolve(p, n, all + part * HarmonicsCount(p) * n, table + part * (3 * p + 1) * n));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, PetscInt parts, SphereTable *t) {
+  const PetscInt columns = SphereColumns(symmetry, p);
   PetscFunctionBeginUser;
   *t = (SphereTable){0};
-  PetscCall(SphereGridCreate(q, &t->grid));
-  PetscCall(PetscMalloc1(parts * count * t->grid.n, &t->part[0]));
-  PetscCall(HarmonicsAt(p, t->grid.n, t->grid.theta, t->grid.phi, parts, t->part[0]));
-  for (PetscInt part = 1; part < parts; part++) t->part[part] = t->part[0] + part * count * t->grid.n;
+  PetscCall(SphereGridCreate(q, symmetry == SPHERE_WHOLE ? GRID_WHOLE : GRID_MERIDIAN, &t->grid));
+  PetscCall(PetscMalloc1(parts * columns * t->grid.n, &t->part[0]));
+  PetscCall(SphereHarmonicsAt(symmetry, p, t->grid.n, t->grid.theta, t->grid.phi, parts, t->part[0]));
+  for (PetscInt part = 0; part < parts; part++) {
+    t->part[part] = t->part[0] + part * columns * t->grid.n;
+    FieldComponents(symmetry, p, t->grid.n, t->part[part], part, t->component);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,6 +102,57 @@ PetscErrorCode SphereTableProject(const SphereTable *t, PetscInt count, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphereFieldValues(const SphereTable *t, PetscInt part, const PetscReal c[], PetscReal y[]) {
+  const int alike = t->component[0].part[part] == t->component[1].part[part] ? 3 : 1; /* components at once */
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d += alike) {
+    const FieldComponent *own = &t->component[d];
+    PetscCall(
+        DenseProduct(PETSC_FALSE, t->grid.n, alike, own->columns, own->part[part], c + own->first, y + d * t->grid.n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphereFieldProject(const SphereTable *t, const PetscReal y[], PetscReal c[]) {
+  const PetscInt n = t->grid.n;
+  PetscReal *weighted;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * n, &weighted));
+  for (PetscInt k = 0; k < 3 * n; k++) weighted[k] = t->grid.weight[k % n] * y[k];
+  for (int d = 0; d < 3; d++) (void)PetscArrayzero(c + t->component[d].first, t->component[d].columns);
+  for (int d = 0; d < 3; d++) {
+    const FieldComponent *own = &t->component[d];
+    PetscCall(DenseMultAdd(PETSC_TRUE, n, own->columns, 1, own->part[HARMONIC], weighted + d * n, c + own->first));
+  }
+  PetscCall(PetscFree(weighted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coefficient number k of component d among those of a whole sphere, and how much of it there is. */
+static PetscReal SphereWholeEntry(Sphere s, int d, PetscInt k, PetscInt *at) {
+  const PetscInt l = s->degree[s->fine.component[d].first + k];
+  *at = d * HarmonicsCount(s->p) + (s->symmetry == SPHERE_WHOLE ? k : l * l + l + (d == 2 ? -1 : d));
+  return s->symmetry == SPHERE_WHOLE || d == 0 ? 1 : 1 / PETSC_SQRT2;
+}
+
+void SphereUnfold(Sphere s, const PetscReal c[], PetscReal whole[]) {
+  (void)PetscArrayzero(whole, 3 * HarmonicsCount(s->p));
+  for (int d = 0; d < 3; d++)
+    for (PetscInt k = 0, at; k < s->fine.component[d].columns; k++) {
+      const PetscReal share = SphereWholeEntry(s, d, k, &at);
+      whole[at] = share * c[s->fine.component[d].first + k];
+    }
+}
+
+void SphereFold(Sphere s, const PetscReal whole[], PetscReal c[]) {
+  (void)PetscArrayzero(c, s->size);
+  for (int d = 0; d < 3; d++)
+    for (PetscInt k = 0, at; k < s->fine.component[d].columns; k++) {
+      const PetscReal share = SphereWholeEntry(s, d, k, &at);
+      c[s->fine.component[d].first + k] += share * whole[at];
+    }
+}
+
 /* SUM_(n <= q) P_n(x). */
 static PetscReal LegendreSum(PetscInt q, PetscReal x) {
   PetscReal last = 1, now = x, sum = q ? 1 + x : 1;
@@ -87,20 +176,22 @@ static void TurnPole(const SphereGrid *g, PetscReal pole, PetscReal theta[], Pet
   }
 }
 
-static PetscErrorCode TurnedGridsCreate(PetscInt p, PetscInt q, const SphereGrid *targets, TurnedGrids *t) {
-  const PetscInt count = HarmonicsCount(p);
+static PetscErrorCode TurnedGridsCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, const SphereGrid *targets,
+                                        TurnedGrids *t) {
   SphereGrid g;
   PetscReal *theta, *phi;
   PetscFunctionBeginUser;
-  PetscCall(SphereGridCreate(q, &g));
+  PetscCall(SphereGridCreate(q, symmetry == SPHERE_WHOLE ? GRID_WHOLE : GRID_HALF, &g));
   t->p = p;
+  t->symmetry = symmetry;
+  t->columns = SphereColumns(symmetry, p);
   t->latitudes = targets->q + 1;
   t->n = g.n;
   PetscCall(PetscMalloc2(g.n, &theta, g.n, &phi));
-  PetscCall(PetscMalloc2(t->latitudes * count * g.n, &t->Y, g.n, &t->weight));
+  PetscCall(PetscMalloc2(t->latitudes * t->columns * g.n, &t->Y, g.n, &t->weight));
   for (PetscInt i = 0; i < t->latitudes; i++) {
-    TurnPole(&g, targets->theta[i * (2 * targets->q + 2)], theta, phi);
-    PetscCall(HarmonicsAt(p, g.n, theta, phi, 1, t->Y + i * count * g.n));
+    TurnPole(&g, targets->theta[i * targets->around], theta, phi);
+    PetscCall(SphereHarmonicsAt(symmetry, p, g.n, theta, phi, 1, t->Y + i * t->columns * g.n));
   }
   for (PetscInt j = 0; j < g.n; j++)
     t->weight[j] = g.weight[j] * 2 * PetscSinReal(g.theta[j] / 2) * LegendreSum(q, PetscCosReal(g.theta[j]));
@@ -109,24 +200,29 @@ static PetscErrorCode TurnedGridsCreate(PetscInt p, PetscInt q, const SphereGrid
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphereCreate(PetscInt p, Sphere *out) {
+PetscErrorCode SphereCreate(PetscInt p, SphereSymmetry symmetry, Sphere *out) {
   Sphere s;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *out = s;
   s->p = p;
-  s->count = HarmonicsCount(p);
-  PetscCall(SphereTableCreate(p, p, 1, &s->shape));
-  PetscCall(SphereTableCreate(p, 2 * p, HARMONIC_PARTS, &s->fine));
-  PetscCall(TurnedGridsCreate(p, 3 * p / 2, &s->shape.grid, &s->turned));
+  s->symmetry = symmetry;
+  s->count = symmetry == SPHERE_WHOLE ? HarmonicsCount(p) : p + 1;
+  s->size = symmetry == SPHERE_WHOLE ? 3 * s->count : 2 * p + 1;
+  PetscCall(PetscMalloc1(s->size, &s->degree));
+  for (PetscInt k = 0; k < s->size; k++)
+    s->degree[k] = symmetry == SPHERE_WHOLE ? HarmonicsDegree(k % s->count) : k <= p ? k : k - p;
+  PetscCall(SphereTableCreate(p, p, symmetry, 1, &s->shape));
+  PetscCall(SphereTableCreate(p, 2 * p, symmetry, HARMONIC_PARTS, &s->fine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphereNormalTables(Sphere s) {
+PetscErrorCode SphereTurn(Sphere s, PetscBool normals) {
   PetscFunctionBeginUser;
-  if (s->normal.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TurnedGridsCreate(2 * s->p, 3 * s->p / 2, &s->shape.grid, &s->normal));
-  PetscCall(SphereTableCreate(2 * s->p, 2 * s->p, 1, &s->twice));
+  if (!s->turned.n) PetscCall(TurnedGridsCreate(s->p, 3 * s->p / 2, s->symmetry, &s->shape.grid, &s->turned));
+  if (!normals || s->normal.n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TurnedGridsCreate(2 * s->p, 3 * s->p / 2, s->symmetry, &s->shape.grid, &s->normal));
+  PetscCall(SphereTableCreate(2 * s->p, 2 * s->p, s->symmetry, 1, &s->twice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,6 +233,7 @@ PetscErrorCode SphereDestroy(Sphere *sphere) {
   PetscCall(SphereTableDestroy(&s->shape));
   PetscCall(SphereTableDestroy(&s->fine));
   PetscCall(SphereTableDestroy(&s->twice));
+  PetscCall(PetscFree(s->degree));
   PetscCall(PetscFree2(s->turned.Y, s->turned.weight));
   PetscCall(PetscFree2(s->normal.Y, s->normal.weight));
   PetscCall(PetscFree(*sphere));

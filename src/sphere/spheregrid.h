@@ -3,6 +3,14 @@
    A grid of degree q has q + 1 latitudes at the nodes of Gauss and Legendre, and 2q + 2 longitudes from 0 on, latitude
    by latitude from the north pole. Its weights integrate harmonics of degree 2q + 1 exactly.
 
+   Fields, such as X, have three components, which are made of some harmonics each. On a whole sphere each component is
+   made of all of them, with its own coefficients. Of a body of revolution about x,
+
+       x = SUM b_l Y_(l, 0),      (y, z) = SUM a_l (Y_(l, 1), Y_(l, -1))/sqrt(2)        (b_0 .. b_p, a_1 .. a_p),
+
+   y and z share their coefficients, scalars are sums of Y_(l, 0), and the points of one meridian, phi = 0, are enough:
+   there y is the distance from the axis, and z = 0 but for its derivatives by phi.
+
    A turned grid has its pole at a point of another grid. With its own weights
 
        w_j SUM_(n <= q) 2 sin(theta_j/2) P_n(cos theta_j)
@@ -13,49 +21,70 @@
 #pragma once
 #include "sphere/harmonics.h"
 
+/* What is represented: any surface, or bodies of revolution about the axis x. */
+typedef enum { SPHERE_WHOLE, SPHERE_REVOLVED } SphereSymmetry;
+
+/* Which longitudes of a grid there are: all; those up to pi, which stand for their mirror images too; 0 for all. */
+typedef enum { GRID_WHOLE, GRID_HALF, GRID_MERIDIAN } GridCover;
+
 typedef struct {
-  PetscInt q, n;          /* degree, (q + 1)(2q + 2) points */
+  PetscInt q, around, n;  /* degree, longitudes, (q + 1) around points */
   PetscReal *theta, *phi; /* [n] */
   PetscReal *weight;      /* [n] */
 } SphereGrid;
 
-PETSC_EXTERN PetscErrorCode SphereGridCreate(PetscInt q, SphereGrid *grid);
+PETSC_EXTERN PetscErrorCode SphereGridCreate(PetscInt q, GridCover cover, SphereGrid *grid);
 PETSC_EXTERN PetscErrorCode SphereGridDestroy(SphereGrid *grid);
+
+/* The harmonics of a component of fields, and its coefficients among those of the field. */
+typedef struct {
+  PetscInt first, columns;
+  const PetscReal *part[HARMONIC_PARTS]; /* [columns][n] */
+} FieldComponent;
 
 /* A grid with its harmonics. */
 typedef struct {
   SphereGrid grid;
-  PetscReal *part[HARMONIC_PARTS]; /* [count][n]; NULL: not made */
+  PetscReal *part[HARMONIC_PARTS]; /* [columns][n], scalars first; NULL: not made */
+  FieldComponent component[3];
 } SphereTable;
 
 /* The turned grids of the points of a grid at longitude 0. */
 typedef struct {
-  PetscInt p;            /* degree of the harmonics */
-  PetscInt latitudes, n; /* points of each; 0: not made */
-  PetscReal *Y;          /* [latitudes][count][n] */
-  PetscReal *weight;     /* [n] the singular ones */
+  PetscInt p;              /* degree of the harmonics */
+  PetscInt latitudes, n;   /* points of each; 0: not made */
+  PetscInt columns;        /* harmonics of a table */
+  PetscReal *Y;            /* [latitudes][columns][n] */
+  PetscReal *weight;       /* [n] the singular ones */
+  SphereSymmetry symmetry; /* of the fields */
 } TurnedGrids;
 
 typedef struct _p_Sphere *Sphere;
 struct _p_Sphere {
-  PetscInt p, count;  /* degree, number of harmonics */
+  SphereSymmetry symmetry;
+  PetscInt p;         /* degree */
+  PetscInt count;     /* coefficients of a scalar */
+  PetscInt size;      /* coefficients of a field */
+  PetscInt *degree;   /* [size] of a field's harmonics */
   SphereTable shape;  /* degree p, values: targets of layers, points that are shown */
   SphereTable fine;   /* degree 2p, with derivatives: bending, area */
-  TurnedGrids turned; /* degree 3p/2, poles at the points of `shape` */
-  TurnedGrids normal; /* the same points with harmonics of degree 2p; made when first used */
-  SphereTable twice;  /* harmonics of degree 2p on the grid of degree 2p, made with it */
+  TurnedGrids turned; /* degree 3p/2, poles at the points of `shape`; made when first used */
+  TurnedGrids normal; /* these points with harmonics of degree 2p; made when first used */
+  SphereTable twice;  /* harmonics of degree 2p on the grid of degree 2p, made with `normal` */
 };
 
 /* SphereCreate - the tables of degree p >= 2. Not collective. */
-PETSC_EXTERN PetscErrorCode SphereCreate(PetscInt p, Sphere *sphere);
+PETSC_EXTERN PetscErrorCode SphereCreate(PetscInt p, SphereSymmetry symmetry, Sphere *sphere);
 PETSC_EXTERN PetscErrorCode SphereDestroy(Sphere *sphere);
 
-/* SphereNormalTables - make sphere->normal, unless it has been made. Not collective. */
-PETSC_EXTERN PetscErrorCode SphereNormalTables(Sphere sphere);
+/* SphereTurn - make sphere->turned, and sphere->normal where normals are wanted, unless they have been made. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode SphereTurn(Sphere sphere, PetscBool normals);
 
 /* SphereTableCreate - of harmonics of degree p at most on a grid of degree q; parts as in HarmonicsAt. Not collective.
  */
-PETSC_EXTERN PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, PetscInt parts, SphereTable *table);
+PETSC_EXTERN PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, PetscInt parts,
+                                              SphereTable *table);
 PETSC_EXTERN PetscErrorCode SphereTableDestroy(SphereTable *table);
 
 /* SphereTableValues - y[fields][n] at the points, of coefficients c[fields][count]; part: which derivative.
@@ -64,3 +93,17 @@ PETSC_EXTERN PetscErrorCode SphereTableValues(const SphereTable *table, PetscInt
                                               const PetscReal c[], PetscReal y[]);
 PETSC_EXTERN PetscErrorCode SphereTableProject(const SphereTable *table, PetscInt count, PetscInt fields,
                                                const PetscReal y[], PetscReal c[]);
+
+/* SphereFieldValues - y[3][n] at the points, of the field c[size]. SphereFieldProject - c[size] of the values y[3][n].
+   SphereUnfold - whole[3][HarmonicsCount(p)], the coefficients on a whole sphere of the field c[size]; SphereFold - the
+   transpose of this map. Not collective. */
+PETSC_EXTERN PetscErrorCode SphereFieldValues(const SphereTable *table, PetscInt part, const PetscReal c[],
+                                              PetscReal y[]);
+PETSC_EXTERN PetscErrorCode SphereFieldProject(const SphereTable *table, const PetscReal y[], PetscReal c[]);
+PETSC_EXTERN void SphereUnfold(Sphere sphere, const PetscReal c[], PetscReal whole[]);
+PETSC_EXTERN void SphereFold(Sphere sphere, const PetscReal whole[], PetscReal c[]);
+
+/* FieldComponents - the components of fields with these symmetry and degree, whose harmonics at n points are
+   part[columns][n]. Not collective. */
+PETSC_EXTERN void FieldComponents(SphereSymmetry symmetry, PetscInt p, PetscInt n, const PetscReal part[],
+                                  PetscInt which, FieldComponent component[3]);

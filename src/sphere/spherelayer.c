@@ -85,30 +85,29 @@ static PetscErrorCode LayerNormals(Sphere s, const PetscReal c[], PetscReal m[])
   PetscReal *T, *P, *a;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(3 * n, &T, 3 * n, &P, 3 * n, &a));
-  PetscCall(SphereTableValues(&s->fine, HARMONIC_T, s->count, 3, c, T));
-  PetscCall(SphereTableValues(&s->fine, HARMONIC_P, s->count, 3, c, P));
+  PetscCall(SphereFieldValues(&s->fine, HARMONIC_T, c, T));
+  PetscCall(SphereFieldValues(&s->fine, HARMONIC_P, c, P));
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(s->fine.grid.theta[i]);
     }
-  PetscCall(SphereTableProject(&s->twice, HarmonicsCount(2 * s->p), 3, a, m));
+  PetscCall(SphereFieldProject(&s->twice, a, m));
   PetscCall(PetscFree3(T, P, a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All inner integrals, out[TENSOR_COUNT][count][targets]. */
-static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const PetscReal c[], PetscReal out[]) {
+/* All inner integrals, out[TENSOR_COUNT][count][targets]; m: coefficients of the normals. */
+static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
+                                     PetscReal out[]) {
   const PetscInt around = 2 * s->p + 2, n = s->turned.n, many = HarmonicsCount(kernel->normal ? 2 * s->p : s->p);
   LatitudeWork w = {.around = around, .n = n};
-  PetscReal *at, *m;
+  PetscReal *at;
   PetscFunctionBeginUser;
-  if (kernel->normal) PetscCall(SphereNormalTables(s));
-  PetscCall(PetscMalloc4(3 * s->shape.grid.n, &at, 3 * many, &m, 3 * around * many, &w.turned, 3 * around * n, &w.X));
+  PetscCall(PetscMalloc3(3 * s->shape.grid.n, &at, 3 * around * many, &w.turned, 3 * around * n, &w.X));
   PetscCall(PetscMalloc2(TENSOR_COUNT * around * n, &w.G, TENSOR_COUNT * around * s->count, &w.rows));
   if (kernel->normal) PetscCall(PetscMalloc1(3 * around * n, &w.normal));
-  if (kernel->normal) PetscCall(LayerNormals(s, c, m));
-  PetscCall(SphereTableValues(&s->shape, HARMONIC, s->count, 3, c, at));
+  PetscCall(SphereFieldValues(&s->shape, HARMONIC, c, at));
   for (PetscInt i = 0; i < s->turned.latitudes; i++) {
     PetscCall(LayerTurnedValues(&s->turned, i, c, &w, w.X));
     if (kernel->normal) PetscCall(LayerTurnedValues(&s->normal, i, m, &w, w.normal));
@@ -116,16 +115,17 @@ static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const Pets
   }
   PetscCall(PetscFree(w.normal));
   PetscCall(PetscFree2(w.G, w.rows));
-  PetscCall(PetscFree4(at, m, w.turned, w.X));
+  PetscCall(PetscFree3(at, w.turned, w.X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphereLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], PetscReal M[]) {
+static PetscErrorCode WholeLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
+                                       PetscReal M[]) {
   const PetscInt count = s->count, targets = s->shape.grid.n, size = 3 * count;
   PetscReal *out, *block;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(TENSOR_COUNT * count * targets, &out, TENSOR_COUNT * count * count, &block));
-  PetscCall(LayerAtTargets(s, kernel, c, out));
+  PetscCall(LayerAtTargets(s, kernel, c, m, out));
   PetscCall(SphereTableProject(&s->shape, count, TENSOR_COUNT * count, out, block));
   for (int q = 0; q < TENSOR_COUNT; q++)
     for (PetscInt l = 0; l < count; l++) {
@@ -138,8 +138,19 @@ PetscErrorCode SphereLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphereLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], PetscReal M[]) {
+  PetscReal *m = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(SphereTurn(s, kernel->normal));
+  if (kernel->normal) PetscCall(PetscMalloc1(3 * HarmonicsCount(2 * s->p), &m));
+  if (kernel->normal) PetscCall(LayerNormals(s, c, m));
+  PetscCall((s->symmetry == SPHERE_WHOLE ? WholeLayerMatrix : MeridianLayerMatrix)(s, kernel, c, m, M));
+  PetscCall(PetscFree(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphereSingleLayer(Sphere s, PetscReal nu, const PetscReal c[], PetscReal M[]) {
-  const PetscInt size = 3 * s->count;
+  const PetscInt size = s->size;
   PetscFunctionBeginUser;
   PetscCall(SphereLayerMatrix(s, &Stokeslet3, c, M));
   for (PetscInt l = 0; l < size; l++)

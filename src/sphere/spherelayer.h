@@ -23,8 +23,13 @@ typedef struct {
 } Kernel3;
 PETSC_EXTERN const Kernel3 Stokeslet3, Stresslet3;
 
-/* SphereLayerMatrix - M[3 count][3 count], components blocked, columns contiguous, of the surface c[3][count].
+/* SphereLayerMatrix - M[size][size], columns contiguous, of the surface c[size].
    SphereSingleLayer - the same of the Stokeslet over the viscosity nu, (M + M^T)/2: the difference of the two is the
    quadrature's. Not collective. */
 PETSC_EXTERN PetscErrorCode SphereLayerMatrix(Sphere sphere, const Kernel3 *kernel, const PetscReal c[], PetscReal M[]);
 PETSC_EXTERN PetscErrorCode SphereSingleLayer(Sphere sphere, PetscReal nu, const PetscReal c[], PetscReal M[]);
+
+/* MeridianLayerMatrix - SphereLayerMatrix of a body of revolution; m: coefficients of degree 2p of n dA/domega, where
+   the kernel has a normal. Not collective. */
+PETSC_EXTERN PetscErrorCode MeridianLayerMatrix(Sphere sphere, const Kernel3 *kernel, const PetscReal c[],
+                                                const PetscReal m[], PetscReal M[]);

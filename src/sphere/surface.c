@@ -89,21 +89,22 @@ static void SurfacePointDerivatives(const SurfacePoint *at, PetscReal dh[HARMONI
   }
 }
 
-/* out[3 count][n] = SUM_part factor[part][3][n] times the harmonics' derivatives, parts first .. last. */
-static void SurfaceCombineParts(Surface s, const PetscReal factor[], PetscInt last, PetscReal out[]) {
-  const PetscInt n = s->n, count = s->sphere->count;
-  for (int d = 0; d < 3; d++)
-    for (PetscInt k = 0; k < count; k++) {
-      PetscReal *column = out + (d * count + k) * n;
-      for (PetscInt part = HARMONIC_T; part <= last; part++) {
-        const PetscReal *f = factor + (3 * part + d) * n, *Y = s->sphere->fine.part[part] + k * n;
-        for (PetscInt i = 0; i < n; i++) column[i] = (part == HARMONIC_T ? 0 : column[i]) + f[i] * Y[i];
+void SurfaceCombine(Surface s, PetscInt first, PetscInt last, const PetscReal factor[], PetscReal out[]) {
+  const PetscInt n = s->n;
+  (void)PetscArrayzero(out, s->sphere->size * n);
+  for (int d = 0; d < 3; d++) {
+    const FieldComponent *own = &s->sphere->fine.component[d];
+    for (PetscInt k = 0; k < own->columns; k++)
+      for (PetscInt part = first; part <= last; part++) {
+        const PetscReal *f = factor + (3 * (part - first) + d) * n, *Y = own->part[part] + k * n;
+        PetscReal *column = out + (own->first + k) * n;
+        for (PetscInt i = 0; i < n; i++) column[i] += f[i] * Y[i];
       }
-    }
+  }
 }
 
 static PetscErrorCode SurfaceDerivatives(Surface s) {
-  const PetscInt n = s->n, size = 3 * s->sphere->count * n;
+  const PetscInt n = s->n, size = s->sphere->size * n;
   PetscReal *h, *J;
   PetscFunctionBeginUser;
   if (!s->dh) PetscCall(PetscMalloc2(size, &s->dh, size, &s->dJ));
@@ -118,8 +119,8 @@ static PetscErrorCode SurfaceDerivatives(Surface s) {
         J[(3 * part + d) * n + i] = dJ[part][d];
       }
   }
-  SurfaceCombineParts(s, h, HARMONIC_PP, s->dh);
-  SurfaceCombineParts(s, J, HARMONIC_P, s->dJ);
+  SurfaceCombine(s, HARMONIC_T, HARMONIC_PP, h + 3 * HARMONIC_T * n, s->dh);
+  SurfaceCombine(s, HARMONIC_T, HARMONIC_P, J + 3 * HARMONIC_T * n, s->dJ);
   PetscCall(PetscFree2(h, J));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,7 +129,7 @@ PetscErrorCode SurfacePlace(Surface s, const PetscReal c[], PetscBool derivative
   const SphereGrid *g = &s->sphere->fine.grid;
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < HARMONIC_PARTS; part++)
-    PetscCall(SphereTableValues(&s->sphere->fine, part, s->sphere->count, 3, c, s->D[part]));
+    PetscCall(SphereFieldValues(&s->sphere->fine, part, c, s->D[part]));
   s->area = s->volume = s->energy = 0;
   for (PetscInt i = 0; i < s->n; i++) {
     const SurfacePoint at = SurfacePointOf(s, i);

@@ -14,6 +14,19 @@ static PetscErrorCode SurfaceProduct(PetscInt n, const PetscReal factor[], Dense
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* C[columns][columns] = SUM over points of the grid's weight times A A, A[columns][n]. */
+static PetscErrorCode SurfaceGram(Surface s, PetscInt columns, const PetscReal A[], PetscReal C[]) {
+  PetscReal *scaled, *root;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(s->n * columns, &scaled, s->n, &root));
+  for (PetscInt i = 0; i < s->n; i++) root[i] = PetscSqrtReal(s->sphere->fine.grid.weight[i]);
+  for (PetscInt k = 0; k < columns; k++)
+    for (PetscInt i = 0; i < s->n; i++) scaled[k * s->n + i] = root[i] * A[k * s->n + i];
+  PetscCall(DenseGram(columns, s->n, scaled, C));
+  PetscCall(PetscFree2(scaled, root));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static DenseView Columns(PetscInt n, PetscInt columns, const PetscReal a[]) {
   return (DenseView){.a = a, .rows = n, .columns = columns, .apart = n};
 }
@@ -21,14 +34,13 @@ static DenseView Columns(PetscInt n, PetscInt columns, const PetscReal a[]) {
 PetscErrorCode SurfaceGradient(Surface s, PetscReal g[]) {
   PetscFunctionBeginUser;
   PetscCall(SurfaceProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, 1, s->h),
-                           Columns(s->n, 3 * s->sphere->count, s->dh), g));
+                           Columns(s->n, s->sphere->size, s->dh), g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SurfaceBending(Surface s, PetscReal K[]) {
-  const DenseView dh = Columns(s->n, 3 * s->sphere->count, s->dh);
   PetscFunctionBeginUser;
-  PetscCall(SurfaceProduct(s->n, s->sphere->fine.grid.weight, dh, dh, K));
+  PetscCall(SurfaceGram(s, s->sphere->size, s->dh, K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,27 +48,17 @@ PetscErrorCode SurfaceAreaRows(Surface s, PetscReal A[]) {
   const PetscInt count = s->sphere->count;
   PetscFunctionBeginUser;
   PetscCall(SurfaceProduct(s->n, s->sphere->fine.grid.weight, Columns(s->n, count, s->sphere->fine.part[HARMONIC]),
-                           Columns(s->n, 3 * count, s->dJ), A));
+                           Columns(s->n, s->sphere->size, s->dJ), A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SurfaceNormals(Surface s, PetscReal N[]) {
-  const PetscInt n = s->n, count = s->sphere->count;
-  const DenseView Y = Columns(n, count, s->sphere->fine.part[HARMONIC]);
-  PetscReal *factor, *block;
+  PetscReal *normal;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &factor, count * count, &block));
-  for (int q = 0; q < TENSOR_COUNT; q++) {
-    const PetscInt a = TensorPair[q][0], b = TensorPair[q][1];
-    for (PetscInt i = 0; i < n; i++)
-      factor[i] = s->sphere->fine.grid.weight[i] * s->normal[a * n + i] * s->normal[b * n + i];
-    PetscCall(SurfaceProduct(n, factor, Y, Y, block));
-    for (PetscInt l = 0; l < count; l++) {
-      PetscCall(PetscArraycpy(N + (b * count + l) * 3 * count + a * count, block + l * count, count));
-      PetscCall(PetscArraycpy(N + (a * count + l) * 3 * count + b * count, block + l * count, count));
-    }
-  }
-  PetscCall(PetscFree2(factor, block));
+  PetscCall(PetscMalloc1(s->sphere->size * s->n, &normal));
+  SurfaceCombine(s, HARMONIC, HARMONIC, s->normal, normal);
+  PetscCall(SurfaceGram(s, s->sphere->size, normal, N));
+  PetscCall(PetscFree(normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,18 +94,16 @@ static PetscErrorCode SurfaceTensionGradients(Surface s, const PetscReal sigma[]
 }
 
 PetscErrorCode SurfacePull(Surface s, const PetscReal sigma[], PetscReal K[]) {
-  const PetscInt n = s->n, count = s->sphere->count;
-  const DenseView Y = Columns(n, count, s->sphere->fine.part[HARMONIC]);
-  PetscReal *L, *normal, *factor, *LP;
+  const PetscInt n = s->n, count = s->sphere->count, size = s->sphere->size;
+  PetscReal *L, *normal, *projected, *LP;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(count * count, &L, 3 * count * count, &normal, n, &factor, 3 * count * count, &LP));
+  PetscCall(PetscMalloc4(count * count, &L, size * n, &normal, size * count, &projected, size * count, &LP));
   PetscCall(SurfaceTensionGradients(s, sigma, L));
-  for (int d = 0; d < 3; d++) {
-    for (PetscInt i = 0; i < n; i++) factor[i] = s->sphere->fine.grid.weight[i] * s->normal[d * n + i];
-    PetscCall(SurfaceProduct(n, factor, Y, Y, normal + d * count * count)); /* of n_d Y */
-  }
-  PetscCall(DenseProduct(PETSC_FALSE, count, 3 * count, count, L, normal, LP));
-  PetscCall(DenseProduct(PETSC_TRUE, 3 * count, 3 * count, count, normal, LP, K));
-  PetscCall(PetscFree4(L, normal, factor, LP));
+  SurfaceCombine(s, HARMONIC, HARMONIC, s->normal, normal);
+  PetscCall(SurfaceProduct(n, s->sphere->fine.grid.weight, Columns(n, count, s->sphere->fine.part[HARMONIC]),
+                           Columns(n, size, normal), projected));
+  PetscCall(DenseProduct(PETSC_FALSE, count, size, count, L, projected, LP));
+  PetscCall(DenseProduct(PETSC_TRUE, size, size, count, projected, LP, K));
+  PetscCall(PetscFree4(L, normal, projected, LP));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,7 +20,7 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
     SurfaceEllipsoid(p, (PetscReal[]){radius[v], radius[v], radius[v]}, all + v * size);
     all[v * size + along * count] += v * r * one;
   }
-  TestCall(SphereCreate(p, &sphere));
+  TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
   TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, (Contact3Law){0}, &cross));
   TestCall(CrossLayerPlace(cross, all + first * size));
   CHECK(PetscAbsReal(cross->gap - (r - 1.6)) < 1e-2 * r, "degree %d: the gap of spheres %g apart is %.4f", (int)p, r,
@@ -55,7 +55,7 @@ static void CheckRepulsion(PetscInt p, PetscReal gap) {
   const PetscInt first = 2 * rank / ranks, own = 2 * (rank + 1) / ranks - first;
   PetscReal *all = TestReals(2 * size), *G = TestReals(2 * size), *change = TestReals(2 * size), energy[3],
             force[2][3] = {{0}};
-  TestCall(SphereCreate(p, &sphere));
+  TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
   TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, 1, law, &cross));
   for (int k = 2; k >= 0; k--) { /* the second sphere a little nearer, a little farther, in its place */
     SurfaceEllipsoid(p, (PetscReal[]){a, a, a}, all);
@@ -106,7 +106,7 @@ static void CheckStep(PetscReal ratio) {
   Surface surface;
   Space s;
   unsigned seed = 3;
-  TestCall(SphereCreate(p, &sphere));
+  TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
   TestCall(SurfaceCreate(sphere, &surface));
   for (PetscInt v = 0; v < vesicles; v++) {
     SurfaceEllipsoid(p, axes, X + v * size);
@@ -161,7 +161,7 @@ static void CheckShapes(void) {
     ShapeSpheroid(v, oblate, 1.1, &along, &across);
     SurfaceEllipsoid(p, (PetscReal[]){along, across, across}, X);
     ShapeAlign(size / 3, tilted, center, X);
-    TestCall(SphereCreate(p, &sphere));
+    TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
     TestCall(SurfaceCreate(sphere, &surface));
     TestCall(SurfacePlace(surface, X, PETSC_FALSE));
     TestCall(ShapeMeasure(surface, &m));

@@ -170,7 +170,7 @@ void Facts(void) {
   static const PetscInt degrees[] = {8, 12};
   for (int q = 0; q < 2; q++) {
     Sphere s;
-    TestCall(SphereCreate(degrees[q], &s));
+    TestCall(SphereCreate(degrees[q], SPHERE_WHOLE, &s));
     CheckTables(s);
     CheckDrag(s, 1, 1e-13);
     CheckDrag(s, 1.6, q ? 1e-11 : 1e-8);
