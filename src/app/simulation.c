@@ -87,7 +87,8 @@ PetscErrorCode SimulationCreate(MPI_Comm comm, Simulation *out) {
 }
 
 PetscErrorCode SimulationCreateWithFlow(MPI_Comm comm, PetvesFlow flow, void *ctx, Simulation *out) {
-  PetscErrorCode (*const create[])(Scene, Model *) = {[DIM_PLANE] = PlaneCreate, [DIM_SPACE] = SpaceModelCreate};
+  PetscErrorCode (*const create[])(Scene, Model *) = {
+      [DIM_PLANE] = PlaneCreate, [DIM_SPACE] = SpaceModelCreate, [DIM_AXIAL] = SpaceModelCreate};
   Simulation s;
   PetscBool only_help;
   PetscFunctionBeginUser;

@@ -6,12 +6,12 @@ static PetscBool IsBiconcave(const void *scene) {
 }
 
 static PetscBool IsSpace(const void *scene) {
-  return ((Scene)scene)->dim == DIM_SPACE;
+  return ((Scene)scene)->dim != DIM_PLANE;
 }
 
 static PetscBool HasFormula(const void *scene) {
   const Scene s = (Scene)scene;
-  return SceneGiven(s, "-flow_u") || SceneGiven(s, "-flow_v") || (s->dim == DIM_SPACE && SceneGiven(s, "-flow_w"));
+  return SceneGiven(s, "-flow_u") || SceneGiven(s, "-flow_v") || (s->dim != DIM_PLANE && SceneGiven(s, "-flow_w"));
 }
 
 static PetscBool IsProjection(const void *scene) {
@@ -69,7 +69,7 @@ static void OutputTime(const void *scene, char value[OPTION_MAX_NAME]) {
 /* Between walls in y the Poiseuille flow vanishes on both. */
 static PetscBool IsWalled(const void *scene) {
   const Scene s = (Scene)scene;
-  if (s->dim == DIM_SPACE) return PETSC_FALSE;
+  if (s->dim != DIM_PLANE) return PETSC_FALSE;
   const RealList box = s->domain.box; /* not checked yet */
   if (s->flow.type != FLOW_POISEUILLE || s->fluid.bc[1] != BC_WALL || box.n != 4) return PETSC_FALSE;
   return box.v[2] < box.v[3];

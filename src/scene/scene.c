@@ -20,7 +20,7 @@ static PetscErrorCode SceneSetFlow(Draft s, PetvesFlow flow, void *ctx) {
              "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
   s->flow.function = flow;
   s->flow.ctx = ctx;
-  if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(s->comm, s->dim == DIM_SPACE ? 3 : 2, &s->flow));
+  if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(s->comm, s->dim != DIM_PLANE ? 3 : 2, &s->flow));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,7 +34,7 @@ PetscErrorCode SceneCreate(MPI_Comm comm, PetvesFlow flow, void *ctx, Scene *out
   s->vesicles.area_scale = 1;
   /* 1  what the user gives, or the table's defaults */
   PetscCall(SceneReadOptions(comm, s));
-  if (s->dim == DIM_SPACE) {
+  if (s->dim != DIM_PLANE) {
     PetscCall(OptionsDepend(&s->options, s));
     PetscCall(SceneSetFlow(s, flow, ctx));
     PetscCall(SceneResolveSpace(s));

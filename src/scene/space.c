@@ -3,6 +3,8 @@
 #include "scene/flow3.h"
 #include "scene/properties.h"
 
+#define CAPSULE_MOST 0.97 /* reduced volume: below the largest that the family of capsules has, 0.9765 */
+
 /* What scenes of the other dimension have in place of an option. */
 static const struct {
   Dimension dim;
@@ -20,7 +22,7 @@ static const struct {
     {DIM_SPACE, "-domain_box", "-dim 2; in three dimensions the fluid has no bounds"}};
 
 const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
-  const PetscInt dim = ((Scene)scene)->dim;
+  const PetscInt dim = ((Scene)scene)->dim == DIM_PLANE ? DIM_PLANE : DIM_SPACE;
   for (size_t k = 0; k < sizeof(instead) / sizeof(instead[0]); k++)
     if (dim == (PetscInt)instead[k].dim && !strcmp(row->name, instead[k].name)) return instead[k].say;
   return dim == DIM_PLANE || row->group ? NULL : "-dim 2";
@@ -64,6 +66,52 @@ static void SceneSpaceScales(Scene s, PetscReal R0[2], PetscReal *bending, Petsc
   }
 }
 
+/* Whether the second and third of three numbers an entry are all 0, or (alike) equal. */
+static PetscBool SceneAlongAxis(const RealList *list, PetscBool alike) {
+  for (PetscInt k = 0; k + 2 < list->n; k += 3)
+    if (alike ? list->v[k + 1] != list->v[k + 2] : list->v[k + 1] != 0 || list->v[k + 2] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* What a scene of bodies of revolution about x cannot have; the flow in a tube. */
+static PetscErrorCode SceneResolveAxial(Draft s) {
+  SceneTube *tube = &s->space.tube;
+  const PetscBool own = (PetscBool)(tube->radius > 0), driven = (PetscBool)(tube->pressure_drop != 0);
+  const PetscInt flow = s->flow.type;
+  PetscFunctionBeginUser;
+  if (s->dim != DIM_AXIAL) PetscFunctionReturn(PETSC_SUCCESS);
+  const SceneRule rules[] = {
+      {flow != FLOW_QUIESCENT && flow != FLOW_AXIAL && flow != FLOW_TUBE && flow != FLOW_UNIFORM,
+       "-flow_type {-flow_type}: not axisymmetric about x; allowed with -dim axisymmetric: quiescent, axial, tube and "
+       "uniform"},
+      {flow == FLOW_UNIFORM && !SceneAlongAxis(&s->flow.velocity, PETSC_FALSE),
+       "-flow_velocity {-flow_velocity}: off the axis; allowed with -dim axisymmetric: u_x,0,0"},
+      {!SceneAlongAxis(&s->vesicles.center, PETSC_FALSE),
+       "-vesicle_center {-vesicle_center}: off the axis; allowed with -dim axisymmetric: x,0,0"},
+      {!SceneAlongAxis(&s->space.axis, PETSC_FALSE),
+       "-vesicle_axis {-vesicle_axis}: not along the axis; allowed with -dim axisymmetric: 1,0,0"},
+      {SceneGiven(s, "-vesicle_half_axes") && !SceneAlongAxis(&s->space.half_axes, PETSC_TRUE),
+       "-vesicle_half_axes {-vesicle_half_axes}: no body of revolution; allowed with -dim axisymmetric: the second "
+       "equal "
+       "to the third"},
+      {!SceneAlongAxis(&s->gravity.g, PETSC_FALSE),
+       "-fluid_gravity {-fluid_gravity}: off the axis; allowed with -dim axisymmetric: g_x,0,0"},
+      {own && flow != FLOW_QUIESCENT && flow != FLOW_TUBE,
+       "-flow_type {-flow_type}: with -tube_radius {-tube_radius}; allowed: quiescent and tube"},
+      {own && flow == FLOW_TUBE && SceneGiven(s, "-flow_half_width") && s->flow.half_width != tube->radius,
+       "-flow_half_width {-flow_half_width}: with -tube_radius {-tube_radius}; allowed: the same number, or none"},
+      {own && SceneHasContrast(s),
+       "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_radius {-tube_radius}; allowed in a tube: 1"},
+      {driven && (flow != FLOW_TUBE || tube->period == 0), "-tube_pressure_drop {-tube_pressure_drop}: without what it "
+                                                           "needs; allowed: with -flow_type tube and -tube_period"},
+      {driven && (SceneGiven(s, "-flow_peak_velocity") || s->flow.ca != 0),
+       "-tube_pressure_drop {-tube_pressure_drop}: with -flow_peak_velocity or -flow_ca; allowed: one of them"}};
+  PetscCall(REFUSE(s, rules));
+  if (own) s->flow.half_width = tube->radius;
+  if (driven) s->flow.peak = tube->pressure_drop * tube->radius * tube->radius / (4 * s->fluid.nu * tube->period);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneResolveSpace(Draft s) {
   const PetscInt count = s->vesicles.count;
   PetscReal R0[2], bending, relaxation, softest = PETSC_MAX_REAL;
@@ -92,11 +140,17 @@ PetscErrorCode SceneResolveSpace(Draft s) {
                            "-dim 3: 1, or one vesicle"},
       {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
   PetscCall(REFUSE(s, rules));
+  for (PetscInt v = 0; v < s->space.reduced_volume.n && s->space.spheroid == SPHEROID_CAPSULE; v++)
+    PetscCall(
+        SCENE_REFUSE_IF(s, s->space.reduced_volume.v[v] > CAPSULE_MOST,
+                        "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; "
+                        "allowed: up to 0.97"));
   for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
     const PetscReal *axis = s->space.axis.v + 3 * v;
     PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
                               "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
+  PetscCall(SceneResolveAxial(s));
   SceneSpaceScales(s, R0, &bending, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0[0] * R0[0] * R0[0]);
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0[0] * R0[0]);
@@ -108,15 +162,19 @@ PetscErrorCode SceneResolveSpace(Draft s) {
 }
 
 PetscErrorCode SceneViewSpace(Scene s, PetscViewer v) {
-  const PetscInt n = PetscSqr(s->space.degree + 1);
+  const PetscBool axial = (PetscBool)(s->dim == DIM_AXIAL);
+  const PetscInt p = s->space.degree, n = axial ? 3 * p + 2 : 4 * PetscSqr(p + 1);
+  char bounds[64] = "without bounds";
   PetscFunctionBeginUser;
+  if (s->space.tube.radius > 0)
+    PetscCall(PetscSNPrintf(bounds, sizeof(bounds), "in a tube of radius %g", (double)s->space.tube.radius));
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
   PetscCall(PetscViewerASCIIPushTab(v));
-  PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow without bounds in three dimensions, nu = %g\n",
-                                   (double)s->fluid.nu));
+  PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow %s in three dimensions%s, nu = %g\n", bounds,
+                                   axial ? ", axisymmetric about x" : "", (double)s->fluid.nu));
   PetscCall(PetscViewerASCIIPrintf(
       v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " unknowns, spherical harmonics of degree %" PetscInt_FMT "\n",
-      s->vesicles.count, 4 * n, s->space.degree));
+      s->vesicles.count, n, p));
   PetscCall(PetscViewerASCIIPrintf(v, "scheme: order %" PetscInt_FMT ", dt = %g to t = %g, labels at the rate %g\n",
                                    s->scheme.order, (double)s->time.dt, (double)s->time.end,
                                    (double)s->space.label_rate));

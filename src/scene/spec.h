@@ -76,16 +76,26 @@ typedef struct {
   PetscInt derivative;           /* DerivativeType */
 } SceneMembrane;
 
-typedef enum { DIM_PLANE, DIM_SPACE } Dimension;
+typedef enum { DIM_PLANE, DIM_SPACE, DIM_AXIAL } Dimension;
+
+typedef enum { SPHEROID_PROLATE, SPHEROID_OBLATE, SPHEROID_CAPSULE } SpheroidType;
+
+/* A circular tube about bodies of revolution. */
+typedef struct {
+  PetscReal radius;        /* 0: none (length) */
+  PetscReal pressure_drop; /* over the period, in place of the flow's peak velocity (length^2/time^2) */
+  PetscReal period;        /* 0: the flux is given (length) */
+} SceneTube;
 
 /* What only scenes in three dimensions have. */
 typedef struct {
   PetscInt degree;                 /* of the spherical harmonics */
   PetscInt newton;                 /* steps on the bending energy within a time step */
   PetscReal label_rate;            /* (1/time) */
-  PetscInt oblate;                 /* of -vesicle_spheroid: 0 prolate, 1 oblate */
+  PetscInt spheroid;               /* SpheroidType */
   RealList radius, reduced_volume; /* of spheroids, one for all or one a vesicle */
   RealList half_axes, axis;        /* three for all, or three a vesicle; half axes in place of radius */
+  SceneTube tube;
 } SceneSpace;
 
 /* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */

@@ -7,7 +7,7 @@
 #define AT(member) offsetof(struct _p_Scene, member)
 
 static PetscBool HasVesicles(const void *scene) {
-  return ((Scene)scene)->shape.vesicles > 0 || ((Scene)scene)->dim == DIM_SPACE;
+  return ((Scene)scene)->shape.vesicles > 0 || ((Scene)scene)->dim != DIM_PLANE;
 }
 
 static PetscBool HasBodies(const void *scene) {
@@ -79,6 +79,10 @@ static PetscBool HasWeight(const void *scene) {
   return none || (HasVesicles(scene) && SceneHasGravity((Scene)scene));
 }
 
+static PetscBool HasTube(const void *scene) {
+  return ((Scene)scene)->space.tube.radius > 0;
+}
+
 static PetscBool IsChannel(const void *scene) {
   const PetscInt *bc = ((Scene)scene)->fluid.bc;
   return bc[0] == BC_PERIODIC && bc[1] == BC_WALL;
@@ -123,7 +127,9 @@ static const OptionNeed
   need_solid_centers = {"posts that are in no lattice and not packed, couette or constriction (-obstacle_shape)", .met = HasSolidCenters},
   need_free = {"-obstacle_free", .met = HasFreeBodies},
   need_heavy = {"vesicles and -scheme_type coupled, or -obstacle_free", .met = HasHeavy},
-  need_space = {"-dim 3", AT(dim), IS(DIM_SPACE)},
+  need_space = {"-dim 3", AT(dim), IS(DIM_SPACE) | IS(DIM_AXIAL)},
+  need_axial = {"-dim axisymmetric", AT(dim), IS(DIM_AXIAL)},
+  need_tube = {"-tube_radius", .met = HasTube},
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
 
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
@@ -132,7 +138,7 @@ static const OptionNeed
 #define MAY_CHANGE PETSC_TRUE
 #define IN_SPACE .group = 1 /* three dimensions have the option */
 static const OptionRow table[] = {
-  {"-dim", OPT_ENUM, AT(dim), "2", "2|3", "dimensions; 3: vesicles in unbounded fluid, surfaces in spherical harmonics", IN_SPACE},
+  {"-dim", OPT_ENUM, AT(dim), "2", "2|3|axisymmetric", "dimensions; 3: vesicles in unbounded fluid, surfaces in spherical harmonics; axisymmetric: bodies of revolution about x, in unbounded fluid or a tube", IN_SPACE},
   {"-domain_box", OPT_REALS, AT(domain.box), "-1,1,-1,1", "any", "x_min,x_max,y_min,y_max (length)"},
   {"-domain_cells", OPT_INTS, AT(domain.cells), "128,128", ">=8", "cells in x and y; cells must be square"},
   {"-domain_bc_x", OPT_ENUM, AT(fluid.bc[0]), "wall", "wall|periodic|free", "boundaries at x_min and x_max; free (in x and y): unbounded fluid, the box is the window of the fields"},
@@ -174,7 +180,7 @@ static const OptionRow table[] = {
   {"-vesicle_spacing", OPT_REAL, AT(vesicles.spacing), "0", ">=0", "marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (" KERNEL_SPACINGS ")", &need_vesicles},
   {"-vesicle_markers", OPT_INT, AT(vesicles.markers), "0", ">=0", "number of markers of each vesicle, instead of the spacing; 0 takes the spacing", &need_vesicles},
   {"-vesicle_allow_close_markers", OPT_BOOL, AT(vesicles.allow_close_markers), "false", "true|false", "accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (" KERNEL_LEAST_SPACINGS ")", &need_vesicles, MAY_CHANGE},
-  {"-vesicle_spheroid", OPT_ENUM, AT(space.oblate), "prolate", "prolate|oblate", "three dimensions: initial shape, a spheroid about -vesicle_axis", &need_space, IN_SPACE},
+  {"-vesicle_spheroid", OPT_ENUM, AT(space.spheroid), "prolate", "prolate|oblate|capsule", "three dimensions: initial shape, a spheroid about -vesicle_axis, or nearly a cylinder with round ends", &need_space, IN_SPACE},
   {"-vesicle_radius", OPT_REALS, AT(space.radius), "1", ">0", "R0 of the volume 4 pi R0^3/3, one for all, or one a vesicle (length)", &need_space, IN_SPACE},
   {"-vesicle_reduced_volume", OPT_REALS, AT(space.reduced_volume), "0.9", "(0,1]", "v = 6 sqrt(pi) volume/area^(3/2), one for all, or one a vesicle", &need_space, IN_SPACE},
   {"-vesicle_half_axes", OPT_REALS, AT(space.half_axes), "1,1,1", ">0", "of an ellipsoid, in place of radius and reduced volume, the first along -vesicle_axis; three for all, or three a vesicle (length)", &need_space, IN_SPACE},
@@ -225,6 +231,9 @@ static const OptionRow table[] = {
   {"-membrane_memory", OPT_REALS, AT(membrane.memory), "0", ">=0", "coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature", &need_vesicles},
   {"-membrane_rest", OPT_PATH, AT(membrane.rest), "initial", "", "of membranes that stretch or remember: the shape at rest, the initial one, a circle of its length, or the curve of a file (initial|circle|FILE); its first point is that of the initial curve", &need_vesicles},
   {"-scheme_startup", OPT_ENUM, AT(scheme.startup), "graded", "euler|graded", "first step of orders 2 and 3: backward Euler, or five growing parts of a step", &need_order},
+  {"-tube_radius", OPT_REAL, AT(space.tube.radius), "0", ">=0", "axisymmetric: radius of a circular tube about the axis x (length); 0: unbounded fluid", &need_axial, IN_SPACE},
+  {"-tube_pressure_drop", OPT_REAL, AT(space.tube.pressure_drop), "0", "any", "in place of -flow_peak_velocity: pressure drop along -tube_period, vesicles included, over the density (length^2/time^2)", &need_tube, IN_SPACE},
+  {"-tube_period", OPT_REAL, AT(space.tube.period), "0", ">=0", "length of tube over which -tube_pressure_drop is given (length); 0: the flux is given", &need_tube, IN_SPACE},
   {"-sphere_degree", OPT_INT, AT(space.degree), "12", "[4,32]", "p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many", &need_space, IN_SPACE},
   {"-sphere_label_rate", OPT_REAL, AT(space.label_rate), "0", ">=0", "rate at which labels are drawn to a spectrum that falls off (1/time); 0: 10 times the larger of the flow's rate and bending/(nu R0^3)", &need_space, IN_SPACE},
   {"-bending_newton", OPT_INT, AT(space.newton), "1", "[1,2]", "Newton steps on the bending energy within a time step; 2: larger steps of stiff membranes", &need_space, MAY_CHANGE, IN_SPACE},

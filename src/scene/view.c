@@ -126,7 +126,7 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
   const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
   const Shape *shape = &scene->shape;
   PetscFunctionBeginUser;
-  if (scene->dim == DIM_SPACE) {
+  if (scene->dim != DIM_PLANE) {
     PetscCall(SceneViewSpace(scene, v));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -160,11 +160,11 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
 PetscErrorCode SceneSayModel(Scene s) {
   char model[SCENE_MODEL], reynolds[64] = "";
   PetscFunctionBeginUser;
-  if (s->dim == DIM_SPACE) {
-    PetscCall(PetvesSay(s->comm,
-                        "petves: quasi-steady flow without bounds, three dimensions, degree %" PetscInt_FMT
-                        ", fixed steps of %g\n",
-                        s->space.degree, (double)s->time.dt));
+  if (s->dim != DIM_PLANE) {
+    PetscCall(PetvesSay(s->comm, "petves: quasi-steady flow %s, %s, degree %" PetscInt_FMT ", fixed steps of %g\n",
+                        s->space.tube.radius > 0 ? "in a tube" : "without bounds",
+                        s->dim == DIM_AXIAL ? "axisymmetric" : "three dimensions", s->space.degree,
+                        (double)s->time.dt));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   SceneModel(s, model);

@@ -19,16 +19,17 @@ PetscErrorCode ShareScatter(const VesicleShare *s, PetscInt each, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, Contact3Law law, CrossLayer *out) {
+PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu, Contact3Law law, CrossLayer *out) {
   CrossLayer c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
   *out = c;
-  c->sphere = sphere;
+  c->fields = c->sphere = fields;
+  if (fields->symmetry != SPHERE_WHOLE) PetscCall(SphereCreate(fields->p, SPHERE_WHOLE, &c->sphere));
   c->share = share;
   c->nu = nu;
   c->law = law;
-  PetscCall(PetscMalloc3(share.vesicles * 3 * sphere->count, &c->X, share.vesicles * 3 * sphere->shape.grid.n,
+  PetscCall(PetscMalloc3(share.vesicles * c->sphere->size, &c->X, share.vesicles * 3 * c->sphere->shape.grid.n,
                          &c->points, share.own * share.vesicles, &c->pair));
   PetscCall(NearTablesCreate(&c->tables));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -52,7 +53,34 @@ PetscErrorCode CrossLayerDestroy(CrossLayer *cross) {
   PetscCall(CrossForgetPairs(c));
   PetscCall(NearTablesDestroy(&c->tables));
   PetscCall(PetscFree3(c->X, c->points, c->pair));
+  if (c->sphere != c->fields) PetscCall(SphereDestroy(&c->sphere));
   PetscCall(PetscFree(*cross));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* whole[vesicles][3 count] on every rank of the fields own[own][size]. */
+static PetscErrorCode CrossGather(CrossLayer c, const PetscReal own[], PetscReal whole[]) {
+  const PetscInt size = c->sphere->size;
+  PetscReal *here;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(c->share.own * size, &here));
+  for (PetscInt v = 0; v < c->share.own; v++) SphereUnfold(c->fields, own + v * c->fields->size, here + v * size);
+  PetscCall(ShareGather(&c->share, size, here, whole));
+  PetscCall(PetscFree(here));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* own[own][size] += the fields whole[own][3 count]. */
+static PetscErrorCode CrossAddFields(CrossLayer c, const PetscReal whole[], PetscReal own[]) {
+  const PetscInt size = c->fields->size;
+  PetscReal *part;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(size, &part));
+  for (PetscInt v = 0; v < c->share.own; v++) {
+    SphereFold(c->fields, whole + v * c->sphere->size, part);
+    for (PetscInt k = 0; k < size; k++) own[v * size + k] += part[k];
+  }
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,26 +119,37 @@ static PetscReal OutlineApart(const Outline *a, const Outline *b) {
   return PetscSqrtReal(apart) - a->radius - b->radius;
 }
 
-/* The gap of two surfaces: at the nearest points of their fine grids, along the normal; negative where they overlap. */
+/* How far point i of a is outside b, along the normal at the point j of b. */
+static PetscReal OutlineOutside(PetscInt n, const Outline *a, PetscInt i, const Outline *b, PetscInt j) {
+  PetscReal along = 0;
+  for (int d = 0; d < 3; d++) along += (a->X[d * n + i] - b->X[d * n + j]) * b->normal[d * n + j];
+  return along;
+}
+
+/* The gap of two surfaces: at the nearest points of their fine grids, along the normal. Where they overlap it is
+   negative, the depth of a point of a below the point of b that is nearest to it. */
 static PetscReal OutlineGap(PetscInt n, const Outline *a, const Outline *b) {
-  PetscReal least = PETSC_MAX_REAL;
+  PetscReal least = PETSC_MAX_REAL, deepest = 0;
   PetscInt at[2] = {0, 0};
-  for (PetscInt i = 0; i < n; i++)
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal nearest = PETSC_MAX_REAL;
+    PetscInt k = 0;
     for (PetscInt j = 0; j < n; j++) {
       const PetscReal x = a->X[i] - b->X[j], y = a->X[n + i] - b->X[n + j], z = a->X[2 * n + i] - b->X[2 * n + j],
                       r2 = x * x + y * y + z * z;
-      if (r2 >= least) continue;
-      least = r2;
-      at[0] = i;
-      at[1] = j;
+      if (r2 >= nearest) continue;
+      nearest = r2;
+      k = j;
     }
-  PetscReal along[2] = {0, 0};
-  for (int d = 0; d < 3; d++) {
-    const PetscReal from_b = a->X[d * n + at[0]] - b->X[d * n + at[1]];
-    along[0] -= from_b * a->normal[d * n + at[0]];
-    along[1] += from_b * b->normal[d * n + at[1]];
+    const PetscReal outside = OutlineOutside(n, a, i, b, k);
+    if (outside < -0.5 * PetscSqrtReal(nearest)) deepest = PetscMin(deepest, outside);
+    if (nearest >= least) continue;
+    least = nearest;
+    at[0] = i;
+    at[1] = k;
   }
-  return PetscMin(along[0], along[1]);
+  if (deepest < 0) return deepest;
+  return PetscMin(OutlineOutside(n, a, at[0], b, at[1]), OutlineOutside(n, b, at[1], a, at[0]));
 }
 
 static PetscBool ShareOwns(const VesicleShare *s, PetscInt v) {
@@ -162,7 +201,7 @@ static PetscErrorCode CrossAgreeGap(CrossLayer c) {
 PetscErrorCode CrossLayerMeasure(CrossLayer c, const PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(CrossForgetPairs(c));
-  PetscCall(ShareGather(&c->share, 3 * c->sphere->count, X, c->X));
+  PetscCall(CrossGather(c, X, c->X));
   PetscCall(CrossFindPairs(c));
   PetscCall(CrossAgreeGap(c));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -249,23 +288,26 @@ static PetscErrorCode CrossAddGrids(CrossLayer c, const PetscReal F[], PetscReal
 PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
   const VesicleShare *s = &c->share;
   const PetscInt size = 3 * c->sphere->count;
-  PetscReal *all;
+  PetscReal *all, *whole;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->vesicles * size, &all));
-  PetscCall(ShareGather(s, size, F, all));
+  PetscCall(PetscCalloc1(s->own * size, &whole));
+  PetscCall(CrossGather(c, F, all));
   for (PetscInt k = 0; k < s->vesicles * size; k++) all[k] /= c->nu;
-  PetscCall(CrossAddGrids(c, all, U));
+  PetscCall(CrossAddGrids(c, all, whole));
   for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
     const PetscReal *f[2];
     PetscReal *u[2];
     for (int side = 0; side < 2; side++) {
       const PetscInt v = pair->surface[side];
       f[side] = all + v * size;
-      u[side] = ShareOwns(s, v) ? U + (v - s->first) * size : NULL;
+      u[side] = ShareOwns(s, v) ? whole + (v - s->first) * size : NULL;
     }
     PetscCall(NearPairAdd(pair->near, f, u));
   }
+  PetscCall(CrossAddFields(c, whole, U));
   PetscCall(PetscFree(all));
+  PetscCall(PetscFree(whole));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,18 +323,22 @@ PetscErrorCode CrossLayerEnergy(CrossLayer c, PetscReal *energy) {
 /* G += the gradient of the energy, or what changes all[vesicles][size] add to it. */
 static PetscErrorCode CrossAddContacts(CrossLayer c, const PetscReal all[], PetscReal G[]) {
   const VesicleShare *s = &c->share;
-  const PetscInt size = 3 * c->sphere->count;
+  const PetscInt size = c->sphere->size;
+  PetscReal *whole;
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->own * size, &whole));
   for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
     const PetscReal *moved[2];
     PetscReal *g[2];
     for (int side = 0; side < 2; side++) {
       const PetscInt v = pair->surface[side];
       moved[side] = all ? all + v * size : NULL;
-      g[side] = ShareOwns(s, v) ? G + (v - s->first) * size : NULL;
+      g[side] = ShareOwns(s, v) ? whole + (v - s->first) * size : NULL;
     }
     PetscCall(Contact3Add(&pair->contact, c->sphere->count, all ? moved : NULL, g));
   }
+  PetscCall(CrossAddFields(c, whole, G));
+  PetscCall(PetscFree(whole));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -303,12 +349,11 @@ PetscErrorCode CrossLayerAddRepulsion(CrossLayer c, PetscReal G[]) {
 }
 
 PetscErrorCode CrossLayerAddStiffness(CrossLayer c, const PetscReal change[], PetscReal G[]) {
-  const PetscInt size = 3 * c->sphere->count;
   PetscReal *all;
   PetscFunctionBeginUser;
   if (c->law.stress <= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(c->share.vesicles * size, &all));
-  PetscCall(ShareGather(&c->share, size, change, all));
+  PetscCall(PetscMalloc1(c->share.vesicles * c->sphere->size, &all));
+  PetscCall(CrossGather(c, change, all));
   PetscCall(CrossAddContacts(c, all, G));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);

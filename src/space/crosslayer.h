@@ -1,6 +1,7 @@
 /* What vesicles do to one another: the single layer between different surfaces, by Stokeslets between the points of the
    grids of degree p, and by finer grids where surfaces are near (nearlayer.h). The matrix between the coefficients of
-   two surfaces is the transpose of that the other way. Every rank knows all surfaces and sums for its own. */
+   two surfaces is the transpose of that the other way. Every rank knows all surfaces and sums for its own. Bodies of
+   revolution are whole spheres here, which only what comes in and goes out does not know. */
 #pragma once
 #include "space/contact3.h"
 
@@ -26,7 +27,8 @@ typedef struct {
 
 typedef struct _p_CrossLayer *CrossLayer;
 struct _p_CrossLayer {
-  Sphere sphere; /* borrowed */
+  Sphere fields; /* of what comes in and goes out; borrowed */
+  Sphere sphere; /* whole; `fields`, where that is whole */
   VesicleShare share;
   PetscReal nu;
   Contact3Law law;
@@ -39,15 +41,15 @@ struct _p_CrossLayer {
   PetscInt nearest[2];
 };
 
-PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere sphere, VesicleShare share, PetscReal nu, Contact3Law law,
+PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu, Contact3Law law,
                                              CrossLayer *cross);
 PETSC_EXTERN PetscErrorCode CrossLayerDestroy(CrossLayer *cross);
 
-/* CrossLayerMeasure - the least gap of the surfaces X[own][3 count]. CrossLayerPlace - the same, and what the surfaces
-   do to one another where none overlap. CrossLayerAdd - U[own][3 count] += the velocities by forces F[own][3 count] on
+/* CrossLayerMeasure - the least gap of the surfaces X[own][size]. CrossLayerPlace - the same, and what the surfaces
+   do to one another where none overlap. CrossLayerAdd - U[own][size] += the velocities by forces F[own][size] on
    the other vesicles. Collective. */
-/* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][3 count] += its
-   gradient. CrossLayerAddStiffness - G[own][3 count] += what a change of the surfaces, change[own][3 count], adds to
+/* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][size] += its
+   gradient. CrossLayerAddStiffness - G[own][size] += what a change of the surfaces, change[own][size], adds to
    the gradient. Collective. */
 PETSC_EXTERN PetscErrorCode CrossLayerEnergy(CrossLayer cross, PetscReal *energy);
 PETSC_EXTERN PetscErrorCode CrossLayerAddRepulsion(CrossLayer cross, PetscReal G[]);

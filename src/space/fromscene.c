@@ -8,27 +8,88 @@ static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* c[2p + 1] or, on a whole sphere, X[3][count] of a capsule about x. */
+static PetscErrorCode SceneCapsule(Scene s, PetscInt v, PetscReal X[]) {
+  Sphere revolved;
+  PetscReal *c;
+  PetscFunctionBeginUser;
+  PetscCall(SphereCreate(s->space.degree, SPHERE_REVOLVED, &revolved));
+  PetscCall(PetscMalloc1(revolved->size, &c));
+  PetscCall(
+      ShapeCapsule(revolved, ListEntry(&s->space.reduced_volume, 1, v, 0), ListEntry(&s->space.radius, 1, v, 0), c));
+  if (s->dim == DIM_AXIAL)
+    PetscCall(PetscArraycpy(X, c, revolved->size));
+  else
+    SphereUnfold(revolved, c, X);
+  PetscCall(PetscFree(c));
+  PetscCall(SphereDestroy(&revolved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Coefficients of a vesicle's first shape. */
-static void SceneFirstShape(Scene s, PetscInt v, PetscReal X[]) {
+static PetscErrorCode SceneFirstShape(Scene s, PetscInt v, PetscReal X[]) {
   const SceneSpace *own = &s->space;
+  const PetscBool ellipsoid = SceneGiven(s, "-vesicle_half_axes");
   PetscReal axes[3], axis[3], center[3];
+  PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) {
     axes[d] = ListEntry(&own->half_axes, 3, v, d);
     axis[d] = ListEntry(&own->axis, 3, v, d);
     center[d] = ListEntry(&s->vesicles.center, 3, v, d);
   }
-  if (!SceneGiven(s, "-vesicle_half_axes")) {
-    ShapeSpheroid(ListEntry(&own->reduced_volume, 1, v, 0), own->oblate ? PETSC_TRUE : PETSC_FALSE,
+  if (!ellipsoid) {
+    ShapeSpheroid(ListEntry(&own->reduced_volume, 1, v, 0), (PetscBool)(own->spheroid == SPHEROID_OBLATE),
                   ListEntry(&own->radius, 1, v, 0), &axes[0], &axes[1]);
     axes[2] = axes[1];
   }
-  SurfaceEllipsoid(own->degree, axes, X);
-  ShapeAlign(HarmonicsCount(own->degree), axis, center, X);
+  if (!ellipsoid && own->spheroid == SPHEROID_CAPSULE)
+    PetscCall(SceneCapsule(s, v, X));
+  else if (s->dim == DIM_AXIAL)
+    SurfaceSpheroid(own->degree, axes[0], axes[1], X);
+  else
+    SurfaceEllipsoid(own->degree, axes, X);
+  if (s->dim == DIM_AXIAL)
+    X[0] += PetscSqrtReal(4 * PETSC_PI) * center[0];
+  else
+    ShapeAlign(HarmonicsCount(own->degree), axis, center, X);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That a vesicle of its area and volume has a shape that fits into the tube: with the radius R_A of the sphere of this
+   area, rho = R/R_A must be above the root of rho^3 - 3 rho + 2v = 0, which a cylinder with round ends has. */
+static PetscErrorCode SpaceCheckPassage(Scene s, Space space) {
+  PetscReal least = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < space->share.own; v++) {
+    const Vesicle3 vesicle = space->vesicle[v];
+    const PetscReal RA = PetscSqrtReal(vesicle->area / (4 * PETSC_PI)),
+                    reduced = PetscMin(1, vesicle->volume / (4 * PETSC_PI * RA * RA * RA / 3));
+    least = PetscMax(least, 2 * RA * PetscCosReal((PetscAcosReal(-reduced) + 4 * PETSC_PI) / 3));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MAX, s->comm));
+  PetvesCheck(s->space.tube.radius > least, s->comm,
+              "-tube_radius %g: no shape with a vesicle's area and volume fits into the tube; allowed: above %g",
+              (double)s->space.tube.radius, (double)least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That the first shapes are inside the tube. */
+static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
+  PetscReal film;
+  PetscFunctionBeginUser;
+  if (!space->tube.tube) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpaceCheckPassage(s, space));
+  PetscCall(SpaceMeasureFilm(space, space->state.X, &film));
+  PetvesCheck(film > 0, s->comm, "-tube_radius %g: a vesicle's first shape is outside by %.3g; allowed: above %.4g",
+              (double)s->space.tube.radius, (double)-film, (double)(s->space.tube.radius - film));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpaceFromScene(Scene s, Space *space) {
-  const PetscInt count = s->vesicles.count, size = 3 * HarmonicsCount(s->space.degree);
-  const SpaceSetting setting = {.p = s->space.degree,
+  const PetscInt p = s->space.degree, count = s->vesicles.count,
+                 size = s->dim == DIM_AXIAL ? 2 * p + 1 : 3 * HarmonicsCount(p);
+  const SpaceSetting setting = {.p = p,
+                                .symmetry = s->dim == DIM_AXIAL ? SPHERE_REVOLVED : SPHERE_WHOLE,
                                 .order = s->scheme.order,
                                 .newton = s->space.newton,
                                 .rtol = 1e-8,
@@ -38,13 +99,14 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                            .base = s->time.dt,
                                            .tolerance = s->time.adapt_tol,
                                            .max_step = s->time.adapt_max_step},
-                                .repulsion = {.stress = s->repulsion.stress, .range = s->repulsion.range}};
+                                .repulsion = {.stress = s->repulsion.stress, .range = s->repulsion.range},
+                                .tube = {.radius = s->space.tube.radius, .period = s->space.tube.period}};
   Vesicle3Setting *material;
   PetscReal *X;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(count, &material, count * size, &X));
   for (PetscInt v = 0; v < count; v++) {
-    SceneFirstShape(s, v, X + v * size);
+    PetscCall(SceneFirstShape(s, v, X + v * size));
     material[v] = (Vesicle3Setting){.nu = s->fluid.nu,
                                     .bending = ListEntry(&s->membrane.stiffness, 1, v, 0),
                                     .label_rate = s->space.label_rate,
@@ -53,6 +115,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   }
   PetscCall(SpaceCreate(s->comm, &setting, count, material, X, space));
   PetscCall(PetscFree2(material, X));
+  PetscCall(SpaceCheckTube(s, *space));
   if (!(*space)->cross) PetscFunctionReturn(PETSC_SUCCESS);
   const CrossLayer cross = (*space)->cross;
   PetscCall(CrossLayerMeasure(cross, (*space)->state.X));

@@ -48,6 +48,10 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, &s->cross));
+  if (setting->tube.radius > 0) {
+    PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube));
+    PetscCall(PetscMalloc1(n * TUBE_ROWS, &s->tube.wall));
+  }
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,6 +62,8 @@ PetscErrorCode SpaceDestroy(Space *space) {
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceSolverDestroy(s));
   PetscCall(CrossLayerDestroy(&s->cross));
+  PetscCall(TubeDestroy(&s->tube.tube));
+  PetscCall(PetscFree(s->tube.wall));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
   PetscCall(SpaceStateDestroy(&s->state));
@@ -139,6 +145,10 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     PetscCall(Vesicle3Velocity(vesicle, s->work.background + v * s->size));
     PetscCall(PetscFree(u));
   }
+  if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->work.Xstar));
+  if (s->tube.tube && s->tube.film <= 0)
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE, "a vesicle is outside the tube by %g",
+                            (double)-s->tube.film));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
   if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));

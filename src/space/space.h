@@ -1,5 +1,5 @@
-/* Vesicles in unbounded fluid of three dimensions: their states in time and one step (docs/space.md). A shape is its
-   coefficients X[3][count] of spherical harmonics; ranks own contiguous ranges of vesicles.
+/* Vesicles in fluid of three dimensions, unbounded or in a tube: their states in time and one step (docs/space.md). A
+   shape is its field of coefficients X[size] (sphere/spheregrid.h); ranks own contiguous ranges of vesicles.
 
    A step of the orders 1 to 3 (scheme/bdf.h) solves the problem of vesicle3.h for all vesicles by GMRES with the prefix
    coupled_, preconditioned by the factors of each vesicle's own problem, which are kept as long as their iterations are
@@ -9,6 +9,7 @@
 #include "scheme/bdf.h"
 #include "scheme/stepcontrol.h"
 #include "space/crosslayer.h"
+#include "space/tube.h"
 #include "space/vesicle3.h"
 
 /* A background flow: u[3][n] at the points X[3][n] at time t, not finite where it fails. Not collective. */
@@ -25,6 +26,7 @@ typedef struct {
   const void *context;
   StepPolicy policy;
   Contact3Law repulsion;
+  TubeSetting tube; /* about bodies of revolution of the fluid's viscosity */
 } SpaceSetting;
 
 /* What the last step did. */
@@ -55,6 +57,14 @@ typedef struct {
   PetscReal *X, *sigma;
 } SpaceFactors;
 
+/* The tube and what the vesicles have of it. */
+typedef struct {
+  Tube tube;        /* NULL: none */
+  PetscReal *wall;  /* [own][size][TUBE_ROWS] factors of the tube's part */
+  PetscReal film;   /* least distance of vesicles that have been placed; negative where they overlap */
+  PetscReal thrust; /* of the membranes' forces on the fluid in the last solve (TubeThrust) */
+} SpaceTube;
+
 typedef struct _p_Space *Space;
 struct _p_Space {
   VesicleShare share;
@@ -64,6 +74,7 @@ struct _p_Space {
   PetscInt unknowns;    /* size + count */
   Vesicle3 *vesicle;    /* [own] */
   CrossLayer cross;     /* NULL: one vesicle */
+  SpaceTube tube;
   SpaceState state, old[BDF_MOST - 1];
   SpaceState start; /* the first state, which a failed first step goes back to */
   PetscInt past;    /* states before the present one that are known */
@@ -121,6 +132,12 @@ PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
 /* SpaceMobility - V[own][size] = M F of the single layers of all vesicles where they have been placed. Collective.
  */
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
+
+/* SpacePlaceTube - the film, and what the tube adds to the vesicles' own mobility, of vesicles that have been placed at
+   X[own][size]. Nothing is added where a vesicle touches the tube. SpaceMeasureFilm - the film of X. Collective. */
+PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
+
+PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
 
 /* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as
    the first guess, in one of the Newton steps of a time step, of which the first may make new factors, and set V to the

@@ -5,19 +5,22 @@
 
 /* Harmonics at the points of a vesicle: the grid of degree p, then both poles. */
 PetscErrorCode SpaceFramesPoints(SpaceModel m) {
-  const SphereGrid *g = &m->space->sphere->shape.grid;
+  const PetscInt p = m->space->sphere->p;
   PetscReal *theta, *phi;
+  SphereGrid g;
   PetscFunctionBeginUser;
-  m->points = g->n + 2;
-  PetscCall(PetscMalloc2(m->space->count * m->points, &m->Y, m->space->share.vesicles + 1, &m->first));
+  PetscCall(SphereGridCreate(p, GRID_WHOLE, &g));
+  m->points = g.n + 2;
+  PetscCall(PetscMalloc2(HarmonicsCount(p) * m->points, &m->Y, m->space->share.vesicles + 1, &m->first));
   for (PetscInt v = 0; v <= m->space->share.vesicles; v++) m->first[v] = v * m->points;
   PetscCall(PetscMalloc2(m->points, &theta, m->points, &phi));
-  PetscCall(PetscArraycpy(theta, g->theta, g->n));
-  PetscCall(PetscArraycpy(phi, g->phi, g->n));
-  theta[g->n] = phi[g->n] = phi[g->n + 1] = 0;
-  theta[g->n + 1] = PETSC_PI;
-  PetscCall(HarmonicsAt(m->space->sphere->p, m->points, theta, phi, 1, m->Y));
+  PetscCall(PetscArraycpy(theta, g.theta, g.n));
+  PetscCall(PetscArraycpy(phi, g.phi, g.n));
+  theta[g.n] = phi[g.n] = phi[g.n + 1] = 0;
+  theta[g.n + 1] = PETSC_PI;
+  PetscCall(HarmonicsAt(p, m->points, theta, phi, 1, m->Y));
   PetscCall(PetscFree2(theta, phi));
+  PetscCall(SphereGridDestroy(&g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,25 +77,40 @@ PetscErrorCode SpaceSeries(void *model, AppendedKind *kind) {
   AppendedAddSeries(kind, (AppendedSeries){"/vesicle/points", all, 3, .unit = "length"});
   AppendedAddSeries(kind, (AppendedSeries){"/vesicle/velocity", all, 3, .unit = "length/time"});
   AppendedAddSeries(kind, (AppendedSeries){"/vesicle/tension", all, 1, .unit = "length^3/time^2"});
-  AppendedAddSeries(kind, (AppendedSeries){"/vesicle/coefficients", 3 * vesicles, m->space->count, .unit = "length"});
+  AppendedAddSeries(kind, (AppendedSeries){"/vesicle/coefficients", 3 * vesicles, HarmonicsCount(m->space->sphere->p),
+                                           .unit = "length"});
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* whole[vesicles][fields][HarmonicsCount(p)]: coefficients on whole spheres, on every rank. */
+static PetscErrorCode SpaceGatherWhole(Space s, ModelPart part, PetscReal whole[]) {
+  const PetscReal *const own[MODEL_PARTS] = {s->state.X, s->state.U, s->state.sigma};
+  const PetscInt each = part == MODEL_TENSION ? s->count : s->size, apart = part == MODEL_TENSION ? 1 : 3;
+  PetscReal *all;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->share.vesicles * each, &all));
+  PetscCall(ShareGather(&s->share, each, own[part], all));
+  for (PetscInt v = 0; v < s->share.vesicles; v++)
+    (part == MODEL_TENSION ? SphereUnfoldScalar : SphereUnfold)(s->sphere, all + v * each,
+                                                                whole + v * apart * HarmonicsCount(s->sphere->p));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpaceGather(void *model, ModelPart part, PetscReal y[]) {
   const SpaceModel m = model;
   const Space s = m->space;
-  const PetscReal *const own[MODEL_PARTS] = {s->state.X, s->state.U, s->state.sigma};
-  const PetscInt fields = part == MODEL_TENSION ? 1 : 3;
+  const PetscInt fields = part == MODEL_TENSION ? 1 : 3, count = HarmonicsCount(s->sphere->p);
   PetscReal *c;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->share.vesicles * fields * s->count, &c));
-  PetscCall(ShareGather(&s->share, fields * s->count, own[part], c));
+  PetscCall(PetscMalloc1(s->share.vesicles * fields * count, &c));
+  PetscCall(SpaceGatherWhole(s, part, c));
   PetscCall(PetscArrayzero(y, s->share.vesicles * fields * m->points));
   for (PetscInt v = 0; v < s->share.vesicles; v++)
     for (PetscInt f = 0; f < fields; f++)
-      for (PetscInt k = 0; k < s->count; k++)
+      for (PetscInt k = 0; k < count; k++)
         for (PetscInt i = 0; i < m->points; i++)
-          y[(v * m->points + i) * fields + f] += c[(v * fields + f) * s->count + k] * m->Y[k * m->points + i];
+          y[(v * m->points + i) * fields + f] += c[(v * fields + f) * count + k] * m->Y[k * m->points + i];
   PetscCall(PetscFree(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -102,12 +120,12 @@ PetscErrorCode SpaceFrame(void *model, AppendedFile *file) {
   const Space s = m->space;
   PetscReal *all;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->share.vesicles * 3 * PetscMax(m->points, s->count), &all));
+  PetscCall(PetscMalloc1(s->share.vesicles * 3 * PetscMax(m->points, HarmonicsCount(s->sphere->p)), &all));
   for (int part = 0; part < MODEL_PARTS; part++) {
     PetscCall(SpaceGather(m, (ModelPart)part, all));
     AppendedSet(file, part, all);
   }
-  PetscCall(ShareGather(&s->share, s->size, s->state.X, all));
+  PetscCall(SpaceGatherWhole(s, MODEL_POINTS, all));
   AppendedSet(file, MODEL_PARTS, all);
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -48,6 +48,7 @@ static PetscErrorCode SpaceMeasureMotion(Surface at, const ShapeMoments *m, cons
     row[SPACE_TENSION_MAX] = i ? PetscMax(row[SPACE_TENSION_MAX], tension[i]) : tension[i];
   }
   row[SPACE_ROTATION] = turned / inertia;
+  if (at->sphere->symmetry == SPHERE_REVOLVED) row[SPACE_VELOCITY_Y] = row[SPACE_VELOCITY_Z] = row[SPACE_ROTATION] = 0;
   PetscCall(PetscFree2(u, tension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,10 +80,23 @@ static PetscErrorCode SpaceMeasureVesicle(Space s, PetscInt v, PetscReal row[]) 
 }
 
 static PetscErrorCode SpaceMeasure(void *model, PetscReal each[], PetscReal last[]) {
-  const Space s = ((SpaceModel)model)->space;
+  const SpaceModel m = model;
+  const Space s = m->space;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(SpaceMeasureVesicle(s, v, each + (s->share.first + v) * SPACE_COUNT));
+    PetscCall(SpaceMeasureVesicle(s, v, each + (s->share.first + v) * m->columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The film, the mean velocity in the tube, and the pressure drop by the membranes' forces, which are those of the last
+   solve. */
+static PetscErrorCode SpaceMeasureTube(SpaceModel m, PetscReal last[]) {
+  const Space s = m->space;
+  const PetscReal R = m->scene->space.tube.radius, P = m->scene->space.tube.period, nu = m->scene->fluid.nu;
+  PetscFunctionBeginUser;
+  PetscCall(SpaceMeasureFilm(s, s->state.X, &last[SPACE_FILM]));
+  last[SPACE_FLOW] = 0.5 * m->scene->flow.peak + (P > 0 ? s->tube.thrust / (8 * PETSC_PI * nu * P) : 0);
+  last[SPACE_PRESSURE] = -s->tube.thrust / (PETSC_PI * R * R);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,6 +112,7 @@ static PetscErrorCode SpaceRow(void *model, PetscReal last[]) {
   last[SPACE_GAP] = s->cross ? s->cross->gap : NAN;
   last[SPACE_ITS] = s->report.its;
   last[SPACE_WALL] = s->report.seconds;
+  if (s->tube.tube) PetscCall(SpaceMeasureTube(m, last));
   m->its += s->report.its;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,6 +247,7 @@ PetscErrorCode SpaceModelCreate(Scene scene, Model *model) {
   *model = (Model){.ops = SpaceOps, .context = m};
   m->scene = scene;
   PetscCall(SpaceFromScene(scene, &m->space));
+  m->columns = m->space->tube.tube ? SPACE_COUNT : SPACE_WITHOUT_TUBE;
   PetscCall(SpaceFramesPoints(m));
   const Space s = m->space;
   *model = (Model){.ops = SpaceOps,
@@ -242,7 +258,7 @@ PetscErrorCode SpaceModelCreate(Scene scene, Model *model) {
                    .dt = &s->setting.policy.base,
                    .failure = s->report.failure,
                    .policy = &s->setting.policy,
-                   .columns = {.vesicles = s->share.vesicles, .columns = SPACE_COUNT, .column = SpaceColumnList},
+                   .columns = {.vesicles = s->share.vesicles, .columns = m->columns, .column = SpaceColumnList},
                    .dim = 3,
                    .first = m->first};
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,7 +8,7 @@
 #include "space/space.h"
 
 /* Columns of series.csv, in order, and what they make of the vesicles' numbers (output/record.h). Units: those of the
-   options, angles in radians. */
+   options, angles in radians. From FILM on they are of tubes alone. */
 /* clang-format off */
 #define SPACE_COLUMNS(COLUMN)                \
   COLUMN(STEP, "step", RUN)                  \
@@ -38,16 +38,20 @@
   COLUMN(GAP, "gap", RUN)                    \
   COLUMN(CONTACT, "energy_contact", RUN)     \
   COLUMN(ITS, "coupled_its", RUN)            \
-  COLUMN(WALL, "wall", RUN)
+  COLUMN(WALL, "wall", RUN)                  \
+  COLUMN(FILM, "film", RUN)                  \
+  COLUMN(FLOW, "mean_velocity", RUN)         \
+  COLUMN(PRESSURE, "pressure_drop_extra", RUN)
 /* clang-format on */
 #define SPACE_ENUM(id, name, kind) SPACE_##id,
-enum { SPACE_COLUMNS(SPACE_ENUM) SPACE_COUNT };
+enum { SPACE_COLUMNS(SPACE_ENUM) SPACE_COUNT, SPACE_WITHOUT_TUBE = SPACE_FILM };
 
 typedef struct _p_SpaceModel *SpaceModel;
 struct _p_SpaceModel {
   Scene scene; /* borrowed */
   Space space;
   PetscInt its;                     /* iterations of the run */
+  PetscInt columns;                 /* of series.csv */
   PetscInt points;                  /* of a vesicle in frames */
   PetscInt *first;                  /* [vesicles + 1] first point of each */
   PetscReal *Y;                     /* [count][points] harmonics there */

@@ -21,6 +21,34 @@ void ShapeSpheroid(PetscReal v, PetscBool oblate, PetscReal R, PetscReal *along,
   *along = *across * low;
 }
 
+PetscErrorCode ShapeCapsule(Sphere s, PetscReal v, PetscReal R, PetscReal c[]) {
+  const SphereGrid *g = &s->fine.grid;
+  PetscReal low = 1, high = 100, volume = 1, *X; /* length over breadth */
+  Surface surface;
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceCreate(s, &surface));
+  PetscCall(PetscCalloc1(3 * g->n, &X));
+  for (int pass = 0; pass < 60; pass++) {
+    const PetscReal length = 0.5 * (low + high);
+    for (PetscInt i = 0; i < g->n; i++) {
+      const PetscReal x = PetscCosReal(g->theta[i]);
+      X[i] = length * x;
+      X[g->n + i] = PetscSinReal(g->theta[i]) * (1 + 0.5 * x * x);
+    }
+    PetscCall(SphereFieldProject(&s->fine, X, c));
+    PetscCall(SurfacePlace(surface, c, PETSC_FALSE));
+    volume = surface->volume;
+    if (6 * PetscSqrtReal(PETSC_PI) * volume / PetscPowReal(surface->area, 1.5) > v)
+      low = length;
+    else
+      high = length;
+  }
+  for (PetscInt k = 0; k < s->size; k++) c[k] *= R * PetscCbrtReal(4 * PETSC_PI / (3 * volume));
+  PetscCall(PetscFree(X));
+  PetscCall(SurfaceDestroy(&surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void ShapeAlign(PetscInt count, const PetscReal axis[3], const PetscReal center[3], PetscReal c[]) {
   const PetscReal length = PetscSqrtReal(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
   PetscReal h[3] = {1 + axis[0] / length, axis[1] / length, axis[2] / length},

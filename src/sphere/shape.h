@@ -6,6 +6,12 @@
    6 sqrt(pi) V/A^(3/2), or of an oblate one, with the volume 4 pi R^3/3; v = 1: R, R. Not collective. */
 PETSC_EXTERN void ShapeSpheroid(PetscReal v, PetscBool oblate, PetscReal R, PetscReal *along, PetscReal *across);
 
+/* ShapeCapsule - c[size], a body of revolution of this reduced volume and the volume 4 pi R^3/3: the axial coordinate
+   is proportional to cos(theta), the distance from the axis to sin(theta) (1 + cos(theta)^2/2), which is flat at the
+   equator. Its radius is at most 1.05 times that of a cylinder with round ends of the same area and volume where v is
+   between 0.6 and 0.97. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode ShapeCapsule(Sphere revolved, PetscReal v, PetscReal R, PetscReal c[]);
+
 /* ShapeAlign - turn c[3][count] so that what was along x is along `axis`, any length, and move it by center (NULL:
    not). Not collective. */
 PETSC_EXTERN void ShapeAlign(PetscInt count, const PetscReal axis[3], const PetscReal center[3], PetscReal c[]);

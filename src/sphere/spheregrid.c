@@ -144,6 +144,11 @@ void SphereUnfold(Sphere s, const PetscReal c[], PetscReal whole[]) {
     }
 }
 
+void SphereUnfoldScalar(Sphere s, const PetscReal c[], PetscReal whole[]) {
+  (void)PetscArrayzero(whole, HarmonicsCount(s->p));
+  for (PetscInt k = 0; k < s->count; k++) whole[s->symmetry == SPHERE_WHOLE ? k : k * k + k] = c[k];
+}
+
 void SphereFold(Sphere s, const PetscReal whole[], PetscReal c[]) {
   (void)PetscArrayzero(c, s->size);
   for (int d = 0; d < 3; d++)

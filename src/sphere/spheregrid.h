@@ -95,12 +95,14 @@ PETSC_EXTERN PetscErrorCode SphereTableProject(const SphereTable *table, PetscIn
                                                const PetscReal y[], PetscReal c[]);
 
 /* SphereFieldValues - y[3][n] at the points, of the field c[size]. SphereFieldProject - c[size] of the values y[3][n].
-   SphereUnfold - whole[3][HarmonicsCount(p)], the coefficients on a whole sphere of the field c[size]; SphereFold - the
-   transpose of this map. Not collective. */
+   SphereUnfold - whole[3][HarmonicsCount(p)], the coefficients on a whole sphere of the field c[size];
+   SphereUnfoldScalar - whole[HarmonicsCount(p)] of the scalar c[count]. SphereFold - the transpose of SphereUnfold. Not
+   collective. */
 PETSC_EXTERN PetscErrorCode SphereFieldValues(const SphereTable *table, PetscInt part, const PetscReal c[],
                                               PetscReal y[]);
 PETSC_EXTERN PetscErrorCode SphereFieldProject(const SphereTable *table, const PetscReal y[], PetscReal c[]);
 PETSC_EXTERN void SphereUnfold(Sphere sphere, const PetscReal c[], PetscReal whole[]);
+PETSC_EXTERN void SphereUnfoldScalar(Sphere sphere, const PetscReal c[], PetscReal whole[]);
 PETSC_EXTERN void SphereFold(Sphere sphere, const PetscReal whole[], PetscReal c[]);
 
 /* FieldComponents - the components of fields with these symmetry and degree, whose harmonics at n points are

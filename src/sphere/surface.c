@@ -8,6 +8,12 @@ void SurfaceEllipsoid(PetscInt p, const PetscReal axes[3], PetscReal c[]) {
   for (int d = 0; d < 3; d++) c[d * count + which[d]] = axes[d] * PetscSqrtReal(4 * PETSC_PI / 3);
 }
 
+void SurfaceSpheroid(PetscInt p, PetscReal along, PetscReal across, PetscReal c[]) {
+  (void)PetscArrayzero(c, 2 * p + 1);
+  c[1] = along * PetscSqrtReal(4 * PETSC_PI / 3);
+  c[p + 1] = across * PetscSqrtReal(8 * PETSC_PI / 3);
+}
+
 PetscErrorCode SurfaceCreate(Sphere sphere, Surface *out) {
   const PetscInt n = sphere->fine.grid.n;
   Surface s;

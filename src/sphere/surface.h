@@ -26,6 +26,10 @@ struct _p_Surface {
    origin: harmonics of degree 1. Not collective. */
 PETSC_EXTERN void SurfaceEllipsoid(PetscInt p, const PetscReal axes[3], PetscReal c[]);
 
+/* SurfaceSpheroid - c[2p + 1], a body of revolution, of a spheroid with these half axes about the origin. Not
+   collective. */
+PETSC_EXTERN void SurfaceSpheroid(PetscInt p, PetscReal along, PetscReal across, PetscReal c[]);
+
 /* SurfaceCreate - nowhere yet. SurfacePlace - at the coefficients c[3][count]: points, measures, and, where asked for,
    dh and dJ. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode SurfaceCreate(Sphere sphere, Surface *surface);

@@ -107,7 +107,7 @@ def with_files(options: str, folder: Path) -> str:
         path = folder / f"{name.replace(' ', '_')}.opts"
         path.write_bytes(content)
         options = options.replace(f"{{opts: {name}}}", path.name)
-    if options.startswith("-dim 3"):
+    if options.startswith("-dim"):
         return options
     return f"{PAPER} {SMALL.removeprefix(CELLS) if options.startswith('-scheme_auto') else SMALL} {options}"
 

@@ -1,0 +1,216 @@
+#include "space/tube.h"
+#include "numerics/blas.h"
+#include <petscdt.h>
+
+#define HIGHEST 18 /* wave number times the gap, above which there is nothing */
+#define SMALL 1e-5 /* arguments below which Bessel functions are their first terms */
+#define MOST_RINGS 2048
+#define NEGLECTED 37. /* of the exponents of an integrand's tail */
+
+/* A node of the quadrature in k: weight, K_0 and K_1 at kR over exp(-kR), and L of G(k, R) = L L^T. */
+typedef struct {
+  PetscReal k, weight, K[2], L[3];
+} TubeNode;
+
+struct _p_Tube {
+  TubeSetting setting;
+  PetscReal nu;
+  PetscReal u[TUBE_NODES], w[TUBE_NODES]; /* Gauss and Legendre on (0, 1) */
+  TubeNode node[TUBE_NODES];
+  SphereTable rings; /* of the last degrees; n 0: not made */
+};
+
+/* I_0(x), I_1(x) and I_2(x) over exp(x), by their recurrence from a high order down and exp(x) = I_0 + 2 SUM I_n. */
+static void BesselI(PetscReal x, PetscReal In[3]) {
+  PetscReal above = 0, now = 1e-280, sum = 0;
+  In[2] = 0;
+  if (x < SMALL) {
+    In[0] = 1 - x + 0.75 * x * x;
+    In[1] = 0.5 * x * (1 - x);
+    In[2] = 0.125 * x * x * (1 - x);
+    return;
+  }
+  for (PetscInt n = 20 + (PetscInt)PetscSqrtReal(2.2 * NEGLECTED * x); n > 0; n--) {
+    const PetscReal below = above + 2 * (PetscReal)n / x * now;
+    sum += 2 * now;
+    In[2] = above;
+    above = now;
+    now = below;
+  }
+  In[0] = now / (sum + now);
+  In[1] = above / (sum + now);
+  In[2] /= sum + now;
+}
+
+/* K_0(x) and K_1(x) over exp(-x): the integrals of exp(-x (cosh t - 1)) cosh(nt), which the trapezoidal rule has to
+   rounding. */
+static void BesselK(PetscReal x, PetscReal K[2]) {
+  const PetscReal step = PetscMin(0.25, 0.7 / PetscSqrtReal(x));
+  PetscReal far = 0;
+  K[0] = K[1] = 0;
+  for (PetscReal t = 0; far < NEGLECTED + t; t += step) {
+    far = x * 2 * PetscSqr(PetscSinhReal(t / 2));
+    const PetscReal f = step * PetscExpReal(-far) * (t > 0 ? 1 : 0.5);
+    K[0] += f;
+    K[1] += f * PetscCoshReal(t);
+  }
+}
+
+/* G(k, r) exp(k(R - r)) without the factors i, [wall][ring]; I_0 - 2 I_1/x = I_2 keeps the digits of its first entry.
+ */
+static void TubeRing(const TubeNode *node, PetscReal R, PetscReal r, PetscReal G[2][2]) {
+  const PetscReal k = node->k, K0 = node->K[0], K1 = node->K[1], c = 1 / (4 * PETSC_PI * k);
+  PetscReal In[3];
+  BesselI(k * r, In);
+  G[0][0] = c * k * k * (R * In[1] * K0 - r * In[2] * K1);
+  G[0][1] = -c * k * k * (R * In[0] * K0 - r * In[1] * K1);
+  G[1][0] = -c * k * k * (r * In[0] * K0 - R * In[1] * K1);
+  G[1][1] = In[0] * K0 / (2 * PETSC_PI) + c * k * k * (r * In[1] * K0 - R * In[0] * K1);
+}
+
+PetscErrorCode TubeCreate(const TubeSetting *setting, PetscReal nu, Tube *out) {
+  Tube t;
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&t));
+  *out = t;
+  t->setting = *setting;
+  t->nu = nu;
+  PetscCall(PetscDTGaussQuadrature(TUBE_NODES, 0, 1, t->u, t->w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TubeDestroy(Tube *tube) {
+  PetscFunctionBeginUser;
+  if (!*tube) PetscFunctionReturn(PETSC_SUCCESS);
+  if ((*tube)->rings.grid.n) PetscCall(SphereTableDestroy(&(*tube)->rings));
+  PetscCall(PetscFree(*tube));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rings of degree q, 2p times a power of two, no farther apart than the gap. */
+static PetscErrorCode TubeMakeRings(Tube t, PetscInt p, const TubeExtent *extent) {
+  PetscInt q = 2 * p;
+  PetscFunctionBeginUser;
+  while (PETSC_PI * extent->stretch > extent->gap * (PetscReal)(q + 1) && q < MOST_RINGS) q *= 2;
+  if (t->rings.grid.n == q + 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (t->rings.grid.n) PetscCall(SphereTableDestroy(&t->rings));
+  PetscCall(SphereTableCreate(p, q, SPHERE_REVOLVED, 1, &t->rings));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
+  const PetscReal R = t->setting.radius, highest = HIGHEST / extent->gap;
+  PetscFunctionBeginUser;
+  PetscCall(TubeMakeRings(t, p, extent));
+  for (PetscInt j = 0; j < TUBE_NODES; j++) { /* k = highest u^3: the integrand has log k at 0 */
+    TubeNode *node = &t->node[j];
+    PetscReal G[2][2];
+    node->k = highest * t->u[j] * t->u[j] * t->u[j];
+    node->weight = 3 * highest * t->u[j] * t->u[j] * t->w[j] / (PETSC_PI * t->nu);
+    BesselK(node->k * R, node->K);
+    TubeRing(node, R, R, G);
+    node->L[0] = PetscSqrtReal(G[0][0]);
+    node->L[1] = G[1][0] / node->L[0];
+    node->L[2] = PetscSqrtReal(G[1][1] - node->L[1] * node->L[1]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void TubeMeasure(Tube t, Surface s, TubeExtent *extent) {
+  const PetscReal *T = s->D[HARMONIC_T];
+  for (PetscInt i = 0; i < s->n; i++) {
+    extent->gap = PetscMin(extent->gap, t->setting.radius - s->D[HARMONIC][s->n + i]);
+    extent->stretch = PetscMax(extent->stretch, PetscSqrtReal(PetscSqr(T[i]) + PetscSqr(T[s->n + i])));
+  }
+}
+
+/* rings[2 n][TUBE_ROWS]: what forces along x at each ring are in the rows, then those along r. */
+static void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]) {
+  const PetscReal R = t->setting.radius, P = t->setting.period;
+  const PetscReal driven = P > 0 ? PetscSqrtReal(1 / (8 * PETSC_PI * t->nu * P)) : 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal r = X[n + i];
+    PetscReal *along = rings + i * TUBE_ROWS, *across = rings + (n + i) * TUBE_ROWS;
+    for (PetscInt j = 0; j < TUBE_NODES; j++) {
+      const TubeNode *node = &t->node[j];
+      const PetscReal scale = PetscSqrtReal(node->weight) * PetscExpReal(-node->k * (R - r)),
+                      c = PetscCosReal(node->k * X[i]), s = PetscSinReal(node->k * X[i]);
+      PetscReal G[2][2];
+      TubeRing(node, R, r, G);
+      for (int ring = 0; ring < 2; ring++) { /* L^-1 G */
+        G[0][ring] *= scale / node->L[0];
+        G[1][ring] = (scale * G[1][ring] - node->L[1] * G[0][ring]) / node->L[2];
+      }
+      for (int wall = 0; wall < 2; wall++) {
+        along[4 * j + 2 * wall] = s * G[wall][1];
+        along[4 * j + 2 * wall + 1] = c * G[wall][1];
+        across[4 * j + 2 * wall] = c * G[wall][0];
+        across[4 * j + 2 * wall + 1] = -s * G[wall][0];
+      }
+    }
+    along[TUBE_ROWS - 1] = driven * 2 * (1 - r * r / (R * R));
+    across[TUBE_ROWS - 1] = 0;
+  }
+}
+
+PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[]) {
+  const SphereTable *table = &t->rings;
+  const PetscInt n = table->grid.n;
+  PetscReal *X, *rings, *weighted;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(3 * n, &X, 2 * n * TUBE_ROWS, &rings, n * table->component[0].columns, &weighted));
+  PetscCall(SphereFieldValues(table, HARMONIC, c, X));
+  TubeRings(t, n, X, rings);
+  for (int d = 0; d < 2; d++) {
+    const FieldComponent *own = &table->component[d];
+    for (PetscInt k = 0; k < own->columns * n; k++) weighted[k] = table->grid.weight[k % n] * own->part[HARMONIC][k];
+    PetscCall(DenseProduct(PETSC_FALSE, TUBE_ROWS, own->columns, n, rings + d * n * TUBE_ROWS, weighted,
+                           T + own->first * TUBE_ROWS));
+  }
+  PetscCall(PetscFree3(X, rings, weighted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The sign of a row: the wall holds fluid back, and a given pressure drop lets it go. */
+static inline PetscReal TubeSign(PetscInt row) {
+  return row == TUBE_ROWS - 1 ? 1 : -1;
+}
+
+PetscErrorCode TubeAddMobility(PetscInt size, const PetscReal T[], PetscReal M[]) {
+  const DenseView factor = {T, TUBE_ROWS, size, TUBE_ROWS};
+  PetscReal *with_sign;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(size * TUBE_ROWS, &with_sign));
+  for (PetscInt k = 0; k < size * TUBE_ROWS; k++) with_sign[k] = TubeSign(k % TUBE_ROWS) * T[k];
+  PetscCall(DenseProductWithin(PETSC_TRUE, factor, (DenseView){with_sign, TUBE_ROWS, size, TUBE_ROWS}, 1, M, size));
+  PetscCall(PetscFree(with_sign));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TubeRows(PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal F[], PetscReal row[]) {
+  PetscFunctionBeginUser;
+  PetscCall(DenseMultAdd(PETSC_FALSE, TUBE_ROWS, size, scale, T, F, row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TubeAddRows(PetscInt size, const PetscReal T[], const PetscReal row[], PetscReal U[]) {
+  PetscReal with_sign[TUBE_ROWS];
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < TUBE_ROWS; k++) with_sign[k] = TubeSign(k) * row[k];
+  PetscCall(DenseMultAdd(PETSC_TRUE, TUBE_ROWS, size, 1, T, with_sign, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TubeThrust(Tube t, Surface s, const PetscReal F[], PetscReal *thrust) {
+  const SphereTable *table = &s->sphere->fine;
+  const PetscReal *r = s->D[HARMONIC] + s->n;
+  PetscReal *f;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * s->n, &f));
+  PetscCall(SphereFieldValues(table, HARMONIC, F, f));
+  *thrust = 0;
+  for (PetscInt i = 0; i < s->n; i++)
+    *thrust += table->grid.weight[i] * f[i] * 2 * (1 - PetscSqr(r[i] / t->setting.radius));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
