@@ -1,0 +1,56 @@
+/* A steady body of revolution, put into three dimensions, stays: the equations of both are the same. */
+#include "facts.h"
+#include "numerics/blas.h"
+#include "space/space.h"
+#include "sphere/shape.h"
+
+/* Extension along x. */
+static PetscErrorCode AxialExtension(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+  const PetscReal e = *(const PetscReal *)rate;
+  for (PetscInt k = 0; k < 3 * n; k++) u[k] = e * X[k] * (k < n ? 1 : -0.5);
+  return PETSC_SUCCESS;
+}
+
+/* The largest coefficient of the normal part of the velocity. */
+static PetscReal AxialNormalSpeed(Space s) {
+  PetscReal *N = TestReals(s->size * s->size), *un = TestReals(s->size);
+  TestCall(SurfacePlace(s->vesicle[0]->at, s->state.X, PETSC_FALSE));
+  TestCall(SurfaceNormals(s->vesicle[0]->at, N));
+  TestCall(DenseMultAdd(PETSC_FALSE, s->size, s->size, 1, N, s->state.U, un));
+  return TestFar(s->size, un, NULL);
+}
+
+void Facts(void) {
+  const PetscReal rate = 0.2, ratio[] = {1, 4};
+  PetscMPIInt ranks;
+  TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  if (ranks > 1) return; /* a vesicle has one rank */
+  for (int q = 0; q < 2; q++) {
+    const SpaceSetting setting = {.p = 10,
+                                  .symmetry = SPHERE_REVOLVED,
+                                  .order = 2,
+                                  .newton = 1,
+                                  .rtol = 1e-12,
+                                  .flow = AxialExtension,
+                                  .context = &rate,
+                                  .policy = {.base = 0.2}};
+    SpaceSetting whole = setting;
+    const Vesicle3Setting material = {.nu = 1, .bending = 0.3, .label_rate = 3, .ratio = ratio[q]};
+    PetscReal along, across, *X = TestReals(2 * setting.p + 1), *unfolded = TestReals(3 * HarmonicsCount(setting.p));
+    Space axial, space;
+    ShapeSpheroid(0.95, PETSC_FALSE, 1, &along, &across);
+    SurfaceSpheroid(setting.p, along, across, X);
+    TestCall(SpaceCreate(PETSC_COMM_WORLD, &setting, 1, &material, X, &axial));
+    for (PetscInt k = 0; k < 400; k++) TestCall(SpaceStep(axial, 1000));
+    const PetscReal still = AxialNormalSpeed(axial);
+    CHECK(still < 1e-7, "ratio %g: a body of revolution comes to rest, %.1e", ratio[q], still);
+    SphereUnfold(axial->sphere, axial->state.X, unfolded);
+    whole.symmetry = SPHERE_WHOLE;
+    TestCall(SpaceCreate(PETSC_COMM_WORLD, &whole, 1, &material, unfolded, &space));
+    TestCall(SpaceStart(space));
+    const PetscReal speed = AxialNormalSpeed(space);
+    CHECK(speed < 1e-6, "ratio %g: and stays in three dimensions, %.1e", ratio[q], speed);
+    TestCall(SpaceDestroy(&axial));
+    TestCall(SpaceDestroy(&space));
+  }
+}
