@@ -39,7 +39,7 @@ class Options(TypedDict, total=False):
     vesicle_reduced_area: Value  # V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x; biconcave: 0.35 to 0.9, 0.65 when not given
     vesicle_center: Value  # x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)
     vesicle_angle: Value  # counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)
-    vesicle_file: Value  # closed curves: x y a line, an empty line between curves, for -vesicle_shape file
+    vesicle_file: Value  # closed curves: x y a line, an empty line between curves, for -vesicle_shape file; three dimensions, without it: surfaces, points x y z a line, or coefficients l m c_x c_y c_z of spherical harmonics
     vesicle_mixture: Value  # fraction of the vesicles that are of each kind, adding up to 1; lists of area, reduced area, semi-axes and bending then have an entry for each kind
     vesicle_packing: Value  # area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center
     vesicle_packing_type: Literal['random', 'lattice'] | None  # random places and angles, or a rectangular lattice with -vesicle_angle

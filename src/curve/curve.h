@@ -97,6 +97,18 @@ PETSC_EXTERN PetscErrorCode CurveDestroy(Curve *curve);
 PETSC_EXTERN PetscErrorCode PointsFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *n,
                                            PetscReal **xy);
 
+/* The lines of a file of surfaces. */
+typedef struct {
+  PetscInt columns, surfaces;
+  PetscInt *end;       /* [surfaces] lines up to the end of each surface */
+  PetscReal *x;        /* [lines][columns] */
+  char digest[DIGEST]; /* of all numbers */
+} SurfaceRows;
+
+/* SurfacesFromFile - the lines of such a file with points "x y z" or coefficients "l m c_x c_y c_z" of spherical
+   harmonics; the caller frees end and x. Collective. */
+PETSC_EXTERN PetscErrorCode SurfacesFromFile(MPI_Comm comm, const char option[], const char file[], SurfaceRows *rows);
+
 /* EllipseAxes - semi-axes a >= b of the ellipse with the given area and reduced area
 
      V = 4 pi area/perimeter^2.

@@ -1,4 +1,5 @@
-/* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve; a header "x,y" is skipped. */
+/* Curves from a text file: "x y" a line, # starts a comment, an empty line ends a curve; a header "x,y" is skipped.
+   Surfaces: "x y z" or "l m c_x c_y c_z" a line. */
 #include "curve/curve.h"
 #include <ctype.h>
 #include <errno.h>
@@ -9,10 +10,13 @@
 #define PERIOD_ERROR 1e-6 /* over a period: error of a last point that is the first a period on */
 #define POINT_ERROR 1e-9  /* over a curve's size: distance up to which two points are one */
 
+#define MOST_COLUMNS 5
+
 typedef struct {
+  PetscInt columns; /* numbers a line; 0: 3 or 5, as the first line has */
   PetscInt n, curves;
   PetscInt *end;                                   /* [curves] points up to the end of each curve */
-  PetscReal *xy;                                   /* [n][2] */
+  PetscReal *xy;                                   /* [n][columns] */
   CurveNote *note;                                 /* [curves] */
   size_t end_capacity, xy_capacity, note_capacity; /* of the three arrays */
   CurveNote next;                                  /* note of the curve that is being read */
@@ -90,21 +94,25 @@ static PetscErrorCode PointsReadNote(const char line[], PetscInt number, Points 
 /* Read line `number` of the file. */
 static PetscErrorCode PointsReadLine(char line[], PetscInt number, Points *points) {
   const char *start = line + strspn(line, " \t");
-  PetscReal x[2];
+  PetscReal x[MOST_COLUMNS];
   PetscFunctionBeginUser;
   line[strcspn(line, "\r\n")] = 0;
   if (*start == '#' && points->period) PetscCall(PointsReadNote(start, number, points));
   if (*start == '#' || (number == 1 && tolower((unsigned char)*start) == 'x')) /* the header "x,y" of CSV */
     PetscFunctionReturn(PETSC_SUCCESS);
   line[strcspn(line, "#")] = 0;
-  const int n = PointsNumbers(line, 2, x);
+  const PetscInt n = PointsNumbers(line, MOST_COLUMNS, x);
+  const PetscBool plane = points->columns == 2;
+  if (points->columns == 0 && (n == 3 || n == 5)) points->columns = n;
   if (n == 0)
     PetscCall(PointsEndCurve(points));
-  else if (n != 2)
-    PointsRefuseLine(points, number, line, "two finite numbers, x y");
+  else if (n != points->columns)
+    PointsRefuseLine(points, number, line,
+                     plane ? "two finite numbers, x y"
+                           : "finite numbers, x y z in all lines or l m c_x c_y c_z in all lines");
   else {
-    PetscCall(ArrayReserve((size_t)(2 * (points->n + 1)), &points->xy_capacity, &points->xy));
-    PetscCall(PetscArraycpy(points->xy + 2 * points->n++, x, 2));
+    PetscCall(ArrayReserve((size_t)(n * (points->n + 1)), &points->xy_capacity, &points->xy));
+    PetscCall(PetscArraycpy(points->xy + n * points->n++, x, n));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -192,6 +200,8 @@ static void PointsClean(Points *p, PetscInt *n, PetscReal xy[], CurveNote *note,
   if (area < 0) PointsReverse(kind, *n, xy);
 }
 
+#define DIGEST_START 0xcbf29ce484222325u
+
 /* The hash FNV-1a of what came before, h, and of n numbers. */
 static uint64_t PointsDigest(uint64_t h, PetscInt n, const PetscReal x[]) {
   const unsigned char *bytes = (const unsigned char *)x;
@@ -201,8 +211,8 @@ static uint64_t PointsDigest(uint64_t h, PetscInt n, const PetscReal x[]) {
 
 PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char file[], const PetscReal period[2],
                               PetscInt *curves, Curve **curve, CurveNote **note) {
-  Points p = {.option = option, .file = file, .least = "8 a curve", .period = period};
-  uint64_t digest = 0xcbf29ce484222325u;
+  Points p = {.columns = 2, .option = option, .file = file, .least = "8 a curve", .period = period};
+  uint64_t digest = DIGEST_START;
   PetscFunctionBeginUser;
   PetscCall(PointsRead(comm, &p));
   *curves = p.curves;
@@ -229,12 +239,22 @@ PetscErrorCode CurvesFromFile(MPI_Comm comm, const char option[], const char fil
 }
 
 PetscErrorCode PointsFromFile(MPI_Comm comm, const char option[], const char file[], PetscInt *n, PetscReal **xy) {
-  Points p = {.option = option, .file = file, .least = "one"};
+  Points p = {.columns = 2, .option = option, .file = file, .least = "one"};
   PetscFunctionBeginUser;
   PetscCall(PointsRead(comm, &p));
   PetscCall(PetscFree(p.note));
   PetscCall(PetscFree(p.end));
   *n = p.n;
   *xy = p.xy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfacesFromFile(MPI_Comm comm, const char option[], const char file[], SurfaceRows *rows) {
+  Points p = {.option = option, .file = file, .least = "one"};
+  PetscFunctionBeginUser;
+  PetscCall(PointsRead(comm, &p));
+  PetscCall(PetscFree(p.note));
+  *rows = (SurfaceRows){.columns = p.columns, .surfaces = p.curves, .end = p.end, .x = p.xy};
+  (void)snprintf(rows->digest, DIGEST, "%016" PRIx64, PointsDigest(DIGEST_START, p.columns * p.n, p.xy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

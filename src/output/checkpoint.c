@@ -40,12 +40,14 @@ PetscErrorCode CheckpointMoveNumbers(H5File *file, PetscBool write, PetscInt num
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Write the scene's options, by which a restart knows the scene. */
+/* Write the scene's options and the digests of its files, by which a restart knows the scene. */
 static PetscErrorCode CheckpointPutScene(H5File *file, Scene scene) {
   const PetscInt format = CHECKPOINT_FORMAT;
   PetscFunctionBeginUser;
   H5Put(file, "format", H5_INT, 1, &format);
   H5PutText(file, "version", PETVES_VERSION);
+  H5PutText(file, "vesicle_digest", scene->shape.digest);
+  H5PutText(file, "obstacle_digest", scene->obstacles.outline.digest);
   for (PetscInt i = 0; SceneOptionRow(i); i++) {
     char *value;
     PetscCall(OptionText(&scene->options, scene, i, &value));

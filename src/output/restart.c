@@ -87,6 +87,24 @@ PetscErrorCode RestartEntries(Scene scene, const H5File *file) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Files of curves may have other names or places, but not other numbers. */
+static PetscErrorCode RestartFiles(Scene scene, H5File *file) {
+  const struct {
+    const char *option, *file, *name, *digest;
+  } all[] = {{"-vesicle_file", scene->vesicles.file, "vesicle_digest", scene->shape.digest},
+             {"-obstacle_file", scene->obstacles.file, "obstacle_digest", scene->obstacles.outline.digest}};
+  char there[DIGEST];
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(H5GetString(file, all[k].name, sizeof(there), there));
+    PetvesCheck(!strcmp(there, all[k].digest), scene->comm,
+                "%s %s: its curves are not those that the run of -restart %s began with; allowed: the same points, "
+                "velocities and rotations",
+                all[k].option, all[k].file, scene->output.restart);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Read all of the open checkpoint. */
 static PetscErrorCode RestartReadAll(const Model *m, H5File *file, Record *record, PetscInt *frames) {
   PetscBool plain, fits;
@@ -96,6 +114,7 @@ static PetscErrorCode RestartReadAll(const Model *m, H5File *file, Record *recor
   PetvesCheck(plain, file->comm,
               "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves", file->path);
   PetscCall(RestartOptions(m->scene, file));
+  PetscCall(RestartFiles(m->scene, file));
   PetscCall(m->ops.checkpoint(m->context, file, PETSC_FALSE, frames));
   PetscCall(H5GetText(file, "series_row", &text));
   RecordParse(record, text);

@@ -101,37 +101,17 @@ static PetscErrorCode CheckpointNumbers(H5File *file, PetscBool write, SchemeTim
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Write the digests of the scene's files, by which a restart knows them, and the vesicles. */
+/* Write the vesicles. */
 static PetscErrorCode CheckpointPutVesicles(Scheme s, H5File *file) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
   PetscFunctionBeginUser;
-  H5PutText(file, "vesicle_digest", s->scene->shape.digest);
-  H5PutText(file, "obstacle_digest", s->scene->obstacles.outline.digest);
   if (!l->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   H5Put(file, "vesicles", H5_INT, 1, &l->bodies);
   H5Put(file, "vesicle_start", H5_INT, l->bodies + 1, l->start);
   H5Put(file, "vesicle_ds", H5_REAL, l->bodies, m->ds);
   H5Put(file, "vesicle_area", H5_REAL, l->bodies, m->A0);
   H5Put(file, "vesicle_length", H5_REAL, l->bodies, m->L0);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Files of curves may have other names or places, but not other numbers. */
-static PetscErrorCode RestartFiles(Scene scene, H5File *file) {
-  const struct {
-    const char *option, *file, *name, *digest;
-  } all[] = {{"-vesicle_file", scene->vesicles.file, "vesicle_digest", scene->shape.digest},
-             {"-obstacle_file", scene->obstacles.file, "obstacle_digest", scene->obstacles.outline.digest}};
-  char there[DIGEST];
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) {
-    PetscCall(H5GetString(file, all[k].name, sizeof(there), there));
-    PetvesCheck(!strcmp(there, all[k].digest), scene->comm,
-                "%s %s: its curves are not those that the run of -restart %s began with; allowed: the same points, "
-                "velocities and rotations",
-                all[k].option, all[k].file, scene->output.restart);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -212,7 +192,6 @@ static PetscErrorCode CheckpointMoveAll(Plane p, H5File *file, PetscBool write, 
   PetscCall(CheckpointNumbers(file, write, &times, p->totals, frames));
   if (!write) {
     PetscCall(RestartEntries(s->scene, file));
-    PetscCall(RestartFiles(s->scene, file));
     PetscCall(RestartTimes(s, file, &times));
   }
   for (PetscInt j = 0; j <= s->past; j++) {

@@ -78,6 +78,7 @@ PetscErrorCode SceneDestroy(Scene *scene) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FlowDropFormulas(&s->flow));
+  PetscCall(PetscFree2(s->space.X, s->space.R0));
   PetscCall(SceneDropShape(s));
   PetscCall(SceneDropObstacles(s));
   PetscCall(OptionsDestroy(&s->options, s));

@@ -15,7 +15,7 @@ static const struct {
     {DIM_SPACE, "-vesicle_area", "-dim 2; -dim 3 has -vesicle_radius"},
     {DIM_SPACE, "-vesicle_reduced_area", "-dim 2; -dim 3 has -vesicle_reduced_volume"},
     {DIM_SPACE, "-vesicle_semi_axes", "-dim 2; -dim 3 has -vesicle_half_axes"},
-    {DIM_SPACE, "-vesicle_shape", "-dim 2; -dim 3 has -vesicle_spheroid"},
+    {DIM_SPACE, "-vesicle_shape", "-dim 2; -dim 3 has -vesicle_spheroid, and -vesicle_file without it"},
     {DIM_SPACE, "-vesicle_angle", "-dim 2; -dim 3 has -vesicle_axis"},
     {DIM_SPACE, "-vesicle_markers", "-dim 2; -dim 3 has -sphere_degree"},
     {DIM_SPACE, "-domain_cells", "-dim 2; -dim 3 has no grid, see -sphere_degree"},
@@ -54,11 +54,7 @@ static void SceneSpaceScales(Scene s, PetscReal R0[2], PetscReal *bending, Petsc
   R0[0] = *bending = *relaxation = 0;
   R0[1] = PETSC_MAX_REAL;
   for (PetscInt v = 0; v < s->vesicles.count; v++) {
-    const PetscReal kappa = ListEntry(&s->membrane.stiffness, 1, v, 0);
-    PetscReal R = ListEntry(&s->space.radius, 1, v, 0);
-    if (SceneGiven(s, "-vesicle_half_axes"))
-      R = PetscCbrtReal(ListEntry(&s->space.half_axes, 3, v, 0) * ListEntry(&s->space.half_axes, 3, v, 1) *
-                        ListEntry(&s->space.half_axes, 3, v, 2));
+    const PetscReal kappa = ListEntry(&s->membrane.stiffness, 1, v, 0), R = s->space.R0[v];
     R0[0] = PetscMax(R0[0], R);
     R0[1] = PetscMin(R0[1], R);
     *bending = PetscMax(*bending, kappa);
@@ -113,10 +109,12 @@ static PetscErrorCode SceneResolveAxial(Draft s) {
 }
 
 PetscErrorCode SceneResolveSpace(Draft s) {
-  const PetscInt count = s->vesicles.count;
   PetscReal R0[2], bending, relaxation, softest = PETSC_MAX_REAL;
+  SurfaceRows rows = {0};
   PetscFunctionBeginUser;
+  PetscCall(SceneReadSurfaces(s, &rows));
   PetscCall(SceneCheckSpaceLists(s));
+  const PetscInt count = s->vesicles.count;
   const PetscBool ratio = SceneHasContrast(s);
   for (PetscInt k = 0; k < s->membrane.stiffness.n; k++) softest = PetscMin(softest, s->membrane.stiffness.v[k]);
   const SceneRule rules[] = {
@@ -131,6 +129,10 @@ PetscErrorCode SceneResolveSpace(Draft s) {
            (SceneGiven(s, "-vesicle_radius") || SceneGiven(s, "-vesicle_reduced_volume")),
        "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both "
        "descriptions"},
+      {*s->vesicles.file && (SceneGiven(s, "-vesicle_half_axes") || SceneGiven(s, "-vesicle_reduced_volume") ||
+                             SceneGiven(s, "-vesicle_axis") || SceneGiven(s, "-vesicle_spheroid")),
+       "-vesicle_file {-vesicle_file}: with -vesicle_half_axes, -vesicle_reduced_volume, -vesicle_axis or "
+       "-vesicle_spheroid; allowed: -vesicle_radius and -vesicle_center"},
       {s->gravity.g.n != 3, "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
       {s->time.adapt == ADAPT_ERROR && s->scheme.order < 2,
        "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with "
@@ -151,6 +153,7 @@ PetscErrorCode SceneResolveSpace(Draft s) {
                               "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
   PetscCall(SceneResolveAxial(s));
+  PetscCall(SceneMakeSurfaces(s, &rows));
   SceneSpaceScales(s, R0, &bending, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0[0] * R0[0] * R0[0]);
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0[0] * R0[0]);

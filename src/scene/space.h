@@ -9,5 +9,11 @@ PETSC_EXTERN const char *SceneSpaceMissing(const OptionRow *row, const void *sce
    or -flow_ca; the rate of labels. Collective; stops with the user's message. */
 PETSC_EXTERN PetscErrorCode SceneResolveSpace(Draft scene);
 
+/* First shapes (surfaces.c). SceneReadSurfaces - with -vesicle_file the lines of the file and the number of vesicles.
+   SceneMakeSurfaces - space.X and space.R0; the lines are freed. Collective; stop with the user's message on a bad
+   file. */
+PETSC_EXTERN PetscErrorCode SceneReadSurfaces(Draft scene, SurfaceRows *rows);
+PETSC_EXTERN PetscErrorCode SceneMakeSurfaces(Draft scene, SurfaceRows *rows);
+
 /* SceneViewSpace - the model in force. Collective. */
 PETSC_EXTERN PetscErrorCode SceneViewSpace(Scene scene, PetscViewer viewer);

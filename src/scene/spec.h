@@ -96,6 +96,7 @@ typedef struct {
   RealList radius, reduced_volume; /* of spheroids, one for all or one a vesicle */
   RealList half_axes, axis;        /* three for all, or three a vesicle; half axes in place of radius */
   SceneTube tube;
+  PetscReal *X, *R0; /* [count][3 harmonics] first shapes, [count] radii of their volumes */
 } SceneSpace;
 
 /* Gravity: a force on the membranes, the inertia of both fluids being the same (Boussinesq). */

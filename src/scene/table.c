@@ -14,6 +14,10 @@ static PetscBool HasBodies(const void *scene) {
   return HasVesicles(scene) || ((Scene)scene)->obstacles.shape != OBSTACLE_NONE;
 }
 
+static PetscBool HasFile(const void *scene) {
+  return ((Scene)scene)->vesicles.shape == SHAPE_FILE || ((Scene)scene)->dim != DIM_PLANE;
+}
+
 static PetscBool IsPacked(const void *scene) {
   const SceneVesicles *vesicles = &((Scene)scene)->vesicles;
   return vesicles->shape == SHAPE_ELLIPSE && vesicles->packing > 0;
@@ -102,7 +106,7 @@ static const OptionNeed
   need_vesicles = {"vesicles (-vesicle_shape)", .met = HasVesicles},
   need_ellipses = {"-vesicle_shape ellipse", AT(vesicles.shape), IS(SHAPE_ELLIPSE)},
   need_sizes = {"-vesicle_shape ellipse or biconcave", AT(vesicles.shape), IS(SHAPE_ELLIPSE) | IS(SHAPE_BICONCAVE)},
-  need_file = {"-vesicle_shape file", AT(vesicles.shape), IS(SHAPE_FILE)},
+  need_file = {"-vesicle_shape file", .met = HasFile},
   need_packing = {"-vesicle_packing", .met = IsPacked},
   need_random = {"-vesicle_packing and -vesicle_packing_type random", .met = IsPackedRandomly},
   need_centers = {"vesicles that are not packed (-vesicle_packing 0)", .met = HasCenters},
@@ -168,7 +172,7 @@ static const OptionRow table[] = {
   {"-vesicle_reduced_area", OPT_REALS, AT(vesicles.reduced_area), "0.7", "(0,1)", "V = area/(pi R0^2), R0 = perimeter/(2 pi); long axis along x", &need_sizes},
   {"-vesicle_center", OPT_REALS, AT(vesicles.center), "0,0", "any", "x,y of the centre, a pair a vesicle; file: added to its coordinates, one pair for all or one each (length)", &need_centers, IN_SPACE},
   {"-vesicle_angle", OPT_REALS, AT(vesicles.angle), "0", "any", "counter-clockwise turn about the centre, file: about each curve's centroid; one for all or one a vesicle (degrees)", &need_angles},
-  {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file", &need_file, MAY_CHANGE},
+  {"-vesicle_file", OPT_PATH, AT(vesicles.file), "", "", "closed curves: x y a line, an empty line between curves, for -vesicle_shape file; three dimensions, without it: surfaces, points x y z a line, or coefficients l m c_x c_y c_z of spherical harmonics", &need_file, MAY_CHANGE, IN_SPACE},
   {"-vesicle_mixture", OPT_REALS, AT(vesicles.mixture), "1", ">0", "fraction of the vesicles that are of each kind, adding up to 1; lists of area, reduced area, semi-axes and bending then have an entry for each kind", &need_sizes},
   {"-vesicle_packing", OPT_REAL, AT(vesicles.packing), "0", "[0,1]", "area fraction of ellipses packed into the box; their number follows, or with -vesicle_count their area; 0: they lie at -vesicle_center", &need_ellipses},
   {"-vesicle_packing_type", OPT_ENUM, AT(vesicles.packing_type), "random", "random|lattice", "random places and angles, or a rectangular lattice with -vesicle_angle", &need_packing},

@@ -1,6 +1,5 @@
 #include "space/fromscene.h"
 #include "scene/flow3.h"
-#include "sphere/shape.h"
 
 static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   PetscFunctionBeginUser;
@@ -8,50 +7,18 @@ static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* c[2p + 1] or, on a whole sphere, X[3][count] of a capsule about x. */
-static PetscErrorCode SceneCapsule(Scene s, PetscInt v, PetscReal X[]) {
+/* X[count][size] of the first shapes. */
+static PetscErrorCode SceneFirstFields(Scene s, PetscReal X[]) {
+  const PetscInt whole = 3 * HarmonicsCount(s->space.degree);
   Sphere revolved;
-  PetscReal *c;
   PetscFunctionBeginUser;
+  if (s->dim != DIM_AXIAL) {
+    PetscCall(PetscArraycpy(X, s->space.X, s->vesicles.count * whole));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SphereCreate(s->space.degree, SPHERE_REVOLVED, &revolved));
-  PetscCall(PetscMalloc1(revolved->size, &c));
-  PetscCall(
-      ShapeCapsule(revolved, ListEntry(&s->space.reduced_volume, 1, v, 0), ListEntry(&s->space.radius, 1, v, 0), c));
-  if (s->dim == DIM_AXIAL)
-    PetscCall(PetscArraycpy(X, c, revolved->size));
-  else
-    SphereUnfold(revolved, c, X);
-  PetscCall(PetscFree(c));
+  for (PetscInt v = 0; v < s->vesicles.count; v++) SphereFold(revolved, s->space.X + v * whole, X + v * revolved->size);
   PetscCall(SphereDestroy(&revolved));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Coefficients of a vesicle's first shape. */
-static PetscErrorCode SceneFirstShape(Scene s, PetscInt v, PetscReal X[]) {
-  const SceneSpace *own = &s->space;
-  const PetscBool ellipsoid = SceneGiven(s, "-vesicle_half_axes");
-  PetscReal axes[3], axis[3], center[3];
-  PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++) {
-    axes[d] = ListEntry(&own->half_axes, 3, v, d);
-    axis[d] = ListEntry(&own->axis, 3, v, d);
-    center[d] = ListEntry(&s->vesicles.center, 3, v, d);
-  }
-  if (!ellipsoid) {
-    ShapeSpheroid(ListEntry(&own->reduced_volume, 1, v, 0), (PetscBool)(own->spheroid == SPHEROID_OBLATE),
-                  ListEntry(&own->radius, 1, v, 0), &axes[0], &axes[1]);
-    axes[2] = axes[1];
-  }
-  if (!ellipsoid && own->spheroid == SPHEROID_CAPSULE)
-    PetscCall(SceneCapsule(s, v, X));
-  else if (s->dim == DIM_AXIAL)
-    SurfaceSpheroid(own->degree, axes[0], axes[1], X);
-  else
-    SurfaceEllipsoid(own->degree, axes, X);
-  if (s->dim == DIM_AXIAL)
-    X[0] += PetscSqrtReal(4 * PETSC_PI) * center[0];
-  else
-    ShapeAlign(HarmonicsCount(own->degree), axis, center, X);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,8 +53,7 @@ static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
 }
 
 PetscErrorCode SpaceFromScene(Scene s, Space *space) {
-  const PetscInt p = s->space.degree, count = s->vesicles.count,
-                 size = s->dim == DIM_AXIAL ? 2 * p + 1 : 3 * HarmonicsCount(p);
+  const PetscInt p = s->space.degree, count = s->vesicles.count;
   const SpaceSetting setting = {.p = p,
                                 .symmetry = s->dim == DIM_AXIAL ? SPHERE_REVOLVED : SPHERE_WHOLE,
                                 .order = s->scheme.order,
@@ -104,9 +70,9 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   Vesicle3Setting *material;
   PetscReal *X;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(count, &material, count * size, &X));
+  PetscCall(PetscMalloc2(count, &material, count * 3 * HarmonicsCount(p), &X));
+  PetscCall(SceneFirstFields(s, X));
   for (PetscInt v = 0; v < count; v++) {
-    PetscCall(SceneFirstShape(s, v, X + v * size));
     material[v] = (Vesicle3Setting){.nu = s->fluid.nu,
                                     .bending = ListEntry(&s->membrane.stiffness, 1, v, 0),
                                     .label_rate = s->space.label_rate,

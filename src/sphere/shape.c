@@ -102,3 +102,78 @@ PetscReal ShapeTail(Sphere sphere, const PetscReal c[]) {
   }
   return PetscSqrtReal(tail / all);
 }
+
+#define FIT_PASSES 5  /* each with the moments of the surface before */
+#define FIT_RANK 1e-6 /* over the largest singular value: smaller ones are those of directions without points */
+
+/* Angles [n] of the points in the sphere that the ellipsoid of these moments is mapped to. */
+static void FitDirections(const ShapeMoments *m, PetscInt n, const PetscReal x[], PetscReal theta[], PetscReal phi[]) {
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal w[3] = {0};
+    for (int j = 0; j < 3; j++) {
+      const PetscReal *axis = m->direction[j];
+      PetscReal along = 0;
+      for (int d = 0; d < 3; d++) along += axis[d] * (x[3 * i + d] - m->center[d]) / m->axis[j];
+      for (int d = 0; d < 3; d++) w[d] += along * axis[d];
+    }
+    theta[i] = PetscAtan2Real(PetscHypotReal(w[0], w[1]), w[2]);
+    phi[i] = PetscAtan2Real(w[1], w[0]);
+  }
+}
+
+/* The coefficients c[3][count] that leave least of b[3][n], the points, with the columns Y[count][n]; b and Y are
+   work. */
+static PetscErrorCode FitLeastSquares(PetscInt n, PetscInt count, PetscReal Y[], PetscReal b[], PetscReal c[],
+                                      PetscReal *spread, PetscReal *off) {
+  const PetscBLASInt rows = (PetscBLASInt)n, columns = (PetscBLASInt)count, sides = 3, room = 8 * (rows + columns);
+  const PetscReal least = FIT_RANK;
+  PetscBLASInt rank, info;
+  PetscReal *singular, *work;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(count, &singular, room, &work));
+  PetscCallBLAS("LAPACKgelss",
+                LAPACKgelss_(&rows, &columns, &sides, Y, &rows, b, &rows, singular, &least, &rank, work, &room, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's gelss failed: %d", (int)info);
+  *spread = singular[count - 1] / singular[0];
+  *off = 0;
+  for (int d = 0; d < 3; d++) {
+    PetscCall(PetscArraycpy(c + d * count, b + d * n, count));
+    for (PetscInt i = count; i < n; i++) *off += PetscSqr(b[d * n + i]) / (PetscReal)n;
+  }
+  *off = PetscSqrtReal(*off);
+  PetscCall(PetscFree2(singular, work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ShapeFit(Sphere sphere, PetscInt n, const PetscReal x[], PetscReal c[], PetscReal *spread,
+                        PetscReal *off) {
+  ShapeMoments m = {.axis = {1, 1, 1}, .direction = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  PetscReal *theta, *phi, *Y, *b;
+  Surface at;
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceCreate(sphere, &at));
+  PetscCall(PetscMalloc4(n, &theta, n, &phi, sphere->count * n, &Y, 3 * n, &b));
+  for (PetscInt i = 0; i < 3 * n; i++) m.center[i % 3] += x[i] / (PetscReal)n;
+  for (int pass = 0; pass < FIT_PASSES; pass++) {
+    FitDirections(&m, n, x, theta, phi);
+    PetscCall(HarmonicsAt(sphere->p, n, theta, phi, 1, Y));
+    for (PetscInt i = 0; i < 3 * n; i++) b[i % 3 * n + i / 3] = x[i];
+    PetscCall(FitLeastSquares(n, sphere->count, Y, b, c, spread, off));
+    PetscCall(SurfacePlace(at, c, PETSC_FALSE));
+    if (*spread < FIT_RANK || !ShapeIsStar(at, m.center)) break; /* no surface whose moments mean something */
+    PetscCall(ShapeMeasure(at, &m));
+  }
+  PetscCall(PetscFree4(theta, phi, Y, b));
+  PetscCall(SurfaceDestroy(&at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ShapeIsStar(Surface s, const PetscReal center[3]) {
+  const PetscInt n = s->n;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal outward = 0;
+    for (int d = 0; d < 3; d++) outward += (s->D[HARMONIC][d * n + i] - center[d]) * s->normal[d * n + i];
+    if (!(outward > 0)) return PETSC_FALSE; /* or not a number, where the surface has no normal */
+  }
+  return PETSC_TRUE;
+}

@@ -27,3 +27,13 @@ typedef struct {
    coefficients from three quarters of the degree on over that of all but the mean. Not collective. */
 PETSC_EXTERN PetscErrorCode ShapeMeasure(Surface surface, ShapeMoments *moments);
 PETSC_EXTERN PetscReal ShapeTail(Sphere sphere, const PetscReal c[]);
+
+/* ShapeFit - c[3][count] of the surface nearest to n >= count points x[n][3] by least squares, for points about a
+   middle that sees all of them. A point belongs to the direction in which it lies from the middle, after the map that
+   makes a sphere of the ellipsoid with the surface's moments: points of an ellipsoid give this ellipsoid. spread: the
+   least singular value of the harmonics at the points over the largest. off: root mean square distance of the points
+   from the surface. ShapeIsStar - whether each ray from a center crosses the surface once, where it has been placed.
+   Not collective. */
+PETSC_EXTERN PetscErrorCode ShapeFit(Sphere sphere, PetscInt n, const PetscReal x[], PetscReal c[], PetscReal *spread,
+                                     PetscReal *off);
+PETSC_EXTERN PetscBool ShapeIsStar(Surface surface, const PetscReal center[3]);

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from harness import run_petves
 
+import petves
+
 SPACE = "-dim 3 -vesicle_bending 0.1 -sphere_degree 8 -output_every 100 -checkpoint_every 0"
 SHEAR = f"{SPACE} -flow_type shear -vesicle_axis 0.8776,0.4794,0"
 
@@ -129,3 +131,52 @@ def test_repulsion_keeps_a_film(tmp_path):
     assert (bare["energy_contact"] == 0).all() and (np.diff(pushed["energy_contact"][4:]) > 0).all()
     assert pushed["coupled_its"].max() < bare["coupled_its"].max() + 3
     assert np.allclose(pushed["energy_contact"], three["energy_contact"], rtol=1e-5)
+
+
+def test_an_ellipsoid_of_points(tmp_path):
+    """Points of an ellipsoid are that of -vesicle_half_axes to 1e-10, along x with its energy, turned with its points."""
+    points = np.random.default_rng(7).normal(size=(400, 3))
+    points *= np.array([1.5, 0.9, 0.8]) / np.linalg.norm(points, axis=1)[:, None]
+    turn = np.linalg.qr(np.random.default_rng(8).normal(size=(3, 3)))[0]
+    given = run_petves(tmp_path / "given", f"{SPACE} -vesicle_half_axes 1.5,0.9,0.8 -vesicle_center 3,2,1 -time_end 0")
+    for name, rows in (("along", points), ("turned", points @ turn.T)):
+        np.savetxt(tmp_path / f"{name}.txt", rows, fmt="%.17g", header="a cloud", delimiter=",")
+        options = f"{SPACE} -vesicle_file {tmp_path / name}.txt -vesicle_center 3,2,1 -time_end 0"
+        found = run_petves(tmp_path / name, options)
+        own = ["area", "volume", "axis_short", "axis_long", "center_x", "center_z"]
+        for column in own + ["energy_bending", "inclination"] * (name == "along"):
+            assert abs(found.series[column][0] - given.series[column][0]) < 1e-10, (name, column)
+        surface = petves.load(found.folder, kind="numpy").points[0, 0] - (3, 2, 1)
+        surface = surface @ turn if name == "turned" else surface
+        assert abs(np.linalg.norm(surface / (1.5, 0.9, 0.8), axis=1) - 1).max() < 1e-10
+
+
+def coefficient_lines(coefficients):
+    """The lines of a file of surfaces, coefficients (vesicles, 3, harmonics)."""
+    degrees = [(k, m) for k in range(99) for m in range(-k, k + 1)]
+    each = [
+        [f"{k} {m} {x:.17g} {y:.17g} {z:.17g}" for (k, m), (x, y, z) in zip(degrees, own.T)] for own in coefficients
+    ]
+    return "\n\n".join("\n".join(lines) for lines in each)
+
+
+def test_a_run_begins_where_another_ended(tmp_path):
+    """Coefficients of a last frame in a file are its shapes, also at another size; a restart knows the file's numbers."""
+    pair = f"{SHEAR} -vesicle_count 2 -vesicle_center -2,0.3,0,2,-0.3,0 -time_step 0.2 -time_end 0.4"
+    first = petves.load(run_petves(tmp_path / "first", pair).folder, kind="numpy")
+    file = tmp_path / "last.txt"
+    file.write_text(coefficient_lines(first.coefficients[-1]))
+    options = f"{SPACE} -vesicle_file {file} -time_step 0.2 -time_end 0.2"
+    run = run_petves(tmp_path / "on", options)
+    again = petves.load(run.folder, kind="numpy")
+    assert np.array_equal(again.coefficients[0], first.coefficients[-1])
+    larger = petves.load(
+        run_petves(tmp_path / "large", f"{options} -vesicle_radius 2 -vesicle_center -9,0,0,9,0,0").folder
+    )
+    assert np.allclose(larger.volume_1[0], 32 / 3 * np.pi, rtol=1e-14)
+    assert np.allclose(larger.axis_long_1[0], 2 * again.series["axis_long_1"][0], rtol=1e-12)
+    assert np.allclose(larger.center_x_1[0], again.series["center_x_1"][0] - 9, rtol=1e-12)
+    file.write_text(coefficient_lines(first.coefficients[0]))
+    restart = f"{options} -time_end 0.4 -restart {run.folder / 'checkpoint.h5'}"
+    stopped = run_petves(tmp_path / "other", restart, good=False)
+    assert "its curves are not those that the run of -restart" in stopped.errors[0]

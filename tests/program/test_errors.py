@@ -24,6 +24,17 @@ def bump(height: float, waves: int = 1) -> list[str]:
     return [f"{0.8 * np.cos(a):.15g} {-1 + height * abs(np.sin(waves * a)):.15g}" for a in t]
 
 
+def around(n: int, radius: float = 1) -> list[str]:
+    """Lines of n points on a sphere, a spiral from pole to pole."""
+    z, turn = 1 - (2 * np.arange(n) + 1) / n, 2.4 * np.arange(n)
+    across = np.sqrt(1 - z**2)
+    return [
+        f"{x:.15g} {y:.15g} {z:.15g}"
+        for x, y, z in radius * np.stack([across * np.cos(turn), across * np.sin(turn), z], 1)
+    ]
+
+
+SPHERE = ["1 1 2 0 0", "1 -1 0 2 0", "1 0 0 0 2"]
 AROUND = np.pi * np.arange(60) / 30
 CIRCLE = circle(20)
 CURVES = {
@@ -59,6 +70,12 @@ CURVES = {
     "flat": [f"{0.01 * k} 0" for k in range(20)],
     "two circles": [*CIRCLE, "", "", *CIRCLE],
     "far point": ["0 0", "3 0"],
+    "few points in space": around(24),
+    "points on a ring": [f"{np.cos(a):.15g} {np.sin(a):.15g} 0" for a in AROUND],
+    "two spheres in one": around(40) + around(41, 1.5),
+    "sphere": SPHERE,
+    "half a harmonic": [*SPHERE, "1.5 0 0 0 0"],
+    "surface that crosses itself": [*SPHERE, "3 1 5 0 0"],
 }
 
 OPTIONS = {
