@@ -117,9 +117,12 @@ PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
 }
 
 void TubeMeasure(Tube t, Surface s, TubeExtent *extent) {
-  const PetscReal *T = s->D[HARMONIC_T];
+  const PetscReal *T = s->D[HARMONIC_T], *r = s->D[HARMONIC] + s->n;
   for (PetscInt i = 0; i < s->n; i++) {
-    extent->gap = PetscMin(extent->gap, t->setting.radius - s->D[HARMONIC][s->n + i]);
+    const PetscBool crest = (PetscBool)(i > 0 && i < s->n - 1 && r[i] > r[i - 1] && r[i] > r[i + 1]);
+    PetscReal top = r[i];
+    if (crest) top -= PetscSqr(r[i + 1] - r[i - 1]) / (8 * (r[i + 1] - 2 * r[i] + r[i - 1])); /* of a parabola */
+    extent->gap = PetscMin(extent->gap, t->setting.radius - top);
     extent->stretch = PetscMax(extent->stretch, PetscSqrtReal(PetscSqr(T[i]) + PetscSqr(T[s->n + i])));
   }
 }

@@ -3,9 +3,11 @@
 Energies at rest: solutions of the shape equations in arc length (boundary-value solver).
 """
 
+import h5py
 import numpy as np
 import pytest
 from harness import run_petves
+from numpy.polynomial import Legendre
 
 AXIAL = "-dim axisymmetric -output_every 100 -checkpoint_every 0"
 TUBE = f"{AXIAL} -flow_type tube -flow_peak_velocity 2"
@@ -80,3 +82,54 @@ def test_two_in_a_tube_on_ranks(tmp_path):
         assert near[0][column][-1] == pytest.approx(near[1][column][-1], abs=1e-9), column
     assert abs(far["velocity_x_2"][-1] - one["velocity_x"][-1]) < 1e-5
     assert abs(near[0]["velocity_x_2"][-1] - one["velocity_x"][-1]) > 1e-4
+
+
+def meridians(run, degree: int) -> np.ndarray:
+    """Coefficients (frame, 2, degree + 1) of x and of the distance from the axis, of a run with one vesicle."""
+    with h5py.File(run.folder / "run.h5") as file:
+        c = file["vesicle/coefficients"][:]
+    at = np.arange(degree + 1) ** 2 + np.arange(degree + 1)
+    across = np.sqrt(2) * c[:, 1, np.minimum(at + 1, c.shape[2] - 1)]
+    across[:, 0] = 0
+    return np.stack([c[:, 0, at], across], axis=1)
+
+
+def skewness(meridian: np.ndarray) -> np.ndarray:
+    """Third moments of the volumes along the axis, about their middles."""
+    degrees = np.arange(meridian.shape[2])
+    x, w = np.polynomial.legendre.leggauss(200)
+    P = np.array([np.sqrt((2 * n + 1) / (4 * np.pi)) * Legendre.basis(n)(x) for n in degrees])
+    dP = np.array([np.sqrt((2 * n + 1) / (4 * np.pi)) * Legendre.basis(n).deriv()(x) for n in degrees])
+    scale = np.sqrt(np.maximum(degrees * (degrees + 1), 1))[:, None]
+    z, dz, r = meridian[:, 0] @ P, meridian[:, 0] @ dP, meridian[:, 1] @ (dP * np.sqrt(1 - x * x) / scale)
+    part = w * r * r * dz
+    return (part * (z - (part * z).sum(1, keepdims=True) / part.sum(1, keepdims=True)) ** 3).sum(1)
+
+
+def growth(folder, volume: float, rate: float, degree: int) -> float:
+    """Growth rate of the asymmetry of a steady symmetric vesicle in axial extension that is disturbed by 1e-4."""
+    scene = f"{AXIAL} -vesicle_bending 1 -flow_type axial -flow_rate {rate} -sphere_degree {degree} -time_step 0.005"
+    steady = run_petves(folder / "steady", f"{scene} -vesicle_reduced_volume {volume} -time_end 1.5 -output_every 1.5")
+    x, r = meridians(steady, degree)[-1]
+    x[::2] = r[::2] = 0
+    x[2] = 1e-4
+    lines = [
+        f"{n} 0 {x[n]} 0 0\n{n} 1 0 {r[n] / np.sqrt(2)} 0\n{n} -1 0 0 {r[n] / np.sqrt(2)}\n"
+        for n in range(1, degree + 1)
+    ]
+    (folder / "disturbed.txt").write_text("".join(lines))
+    disturbed = f"{scene} -vesicle_file {folder}/disturbed.txt -time_end 0.6 -output_every 0.05"
+    run = run_petves(folder / "run", disturbed)
+    return np.polyfit(np.linspace(0.3, 0.6, 7), np.log(np.abs(skewness(meridians(run, degree))[6:])), 1)[0]
+
+
+def test_dumbbells_lose_their_symmetry(tmp_path):
+    """At v = 0.7 above a rate that does not depend on the degree; at v = 0.76 extension keeps the symmetry the better,
+    the faster it is (Narsimhan, Spann and Shaqfeh 2014: asymmetric dumbbells for v < 0.74)."""
+    critical = []
+    for degree in (16, 20):
+        slow, fast = (growth(tmp_path / f"{degree}{rate}", 0.7, rate, degree) for rate in (5, 5.3))
+        assert slow < -0.01 and fast > 0.01
+        critical.append(5 - 0.3 * slow / (fast - slow))
+    assert abs(critical[0] / critical[1] - 1) < 0.005 and abs(critical[0] - 5.15) < 0.03
+    assert growth(tmp_path / "rounder", 0.76, 10, 16) < -3
