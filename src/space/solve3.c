@@ -20,6 +20,7 @@ PetscErrorCode SpaceMeasureFilm(Space s, const PetscReal X[], PetscReal *film) {
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(SurfacePlace(s->vesicle[v]->at, X + v * s->size, PETSC_FALSE));
   PetscCall(SpaceTubeExtent(s, &extent));
   *film = extent.gap;
+  s->tube.spacing = extent.stretch * PETSC_PI / (PetscReal)(s->sphere->p + 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -59,10 +59,11 @@ typedef struct {
 
 /* The tube and what the vesicles have of it. */
 typedef struct {
-  Tube tube;        /* NULL: none */
-  PetscReal *wall;  /* [own][size][TUBE_ROWS] factors of the tube's part */
-  PetscReal film;   /* least distance of vesicles that have been placed; negative where they overlap */
-  PetscReal thrust; /* of the membranes' forces on the fluid in the last solve (TubeThrust) */
+  Tube tube;         /* NULL: none */
+  PetscReal *wall;   /* [own][size][TUBE_ROWS] factors of the tube's part */
+  PetscReal spacing; /* largest of the latitudes of the grids of degree p */
+  PetscReal film;    /* least distance of vesicles that have been placed; negative where they overlap */
+  PetscReal thrust;  /* of the membranes' forces on the fluid in the last solve (TubeThrust) */
 } SpaceTube;
 
 typedef struct _p_Space *Space;

@@ -3,6 +3,7 @@
 #include "space/fromscene.h"
 
 #define ROUGH 0.01 /* spectrum_tail from which on a higher degree is due */
+#define THIN 0.1   /* film over the spacing of latitudes below which a higher degree is due */
 
 static const RecordColumn SpaceColumnList[SPACE_COUNT] = {SPACE_COLUMNS(RECORD_COLUMN)};
 
@@ -117,23 +118,34 @@ static PetscErrorCode SpaceRow(void *model, PetscReal last[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A warning, once, when the degree is too small. */
+/* A warning, once: that harmonics do not resolve `what`, which `measure` says. */
+static PetscErrorCode SpaceWarn(SpaceModel m, int which, const char what[], const char measure[], PetscReal value) {
+  char *warning = m->warning[which];
+  PetscFunctionBeginUser;
+  if (*warning) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(warning, sizeof(m->warning[0]),
+                          "the spherical harmonics do not resolve %s after step %" PetscInt_FMT
+                          ", time %g: %s is %.2g; try -sphere_degree %" PetscInt_FMT,
+                          what, m->space->state.step, (double)m->space->state.t, measure, (double)value,
+                          m->space->sphere->p + 4));
+  PetscCall(PetvesSay(m->scene->comm, "petves: warning: %s\n", warning));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SpaceWatch(void *model, const PetscReal last[]) {
   const SpaceModel m = model;
-  const PetscReal tail = last[SPACE_TAIL];
   PetscFunctionBeginUser;
-  if (tail < ROUGH || *m->warning) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(m->warning, sizeof(m->warning),
-                          "the spherical harmonics do not resolve a vesicle after step %" PetscInt_FMT
-                          ", time %g: spectrum_tail is %.2g; try -sphere_degree %" PetscInt_FMT,
-                          m->space->state.step, (double)m->space->state.t, (double)tail, m->space->sphere->p + 4));
-  PetscCall(PetvesSay(m->scene->comm, "petves: warning: %s\n", m->warning));
+  if (last[SPACE_TAIL] >= ROUGH) PetscCall(SpaceWarn(m, 0, "a vesicle", "spectrum_tail", last[SPACE_TAIL]));
+  if (m->space->tube.tube && last[SPACE_FILM] < THIN * m->space->tube.spacing)
+    PetscCall(SpaceWarn(m, 1, "the film along the tube", "film", last[SPACE_FILM]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static const char *SpaceWarning(const void *model, PetscInt i) {
   const SpaceModel m = (SpaceModel)model;
-  return i == 0 && *m->warning ? m->warning : NULL;
+  for (int which = 0; which < 2; which++)
+    if (*m->warning[which] && i-- == 0) return m->warning[which];
+  return NULL;
 }
 
 /* Write or read whole numbers and times; a run has had those that are read. */

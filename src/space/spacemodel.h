@@ -50,12 +50,12 @@ typedef struct _p_SpaceModel *SpaceModel;
 struct _p_SpaceModel {
   Scene scene; /* borrowed */
   Space space;
-  PetscInt its;                     /* iterations of the run */
-  PetscInt columns;                 /* of series.csv */
-  PetscInt points;                  /* of a vesicle in frames */
-  PetscInt *first;                  /* [vesicles + 1] first point of each */
-  PetscReal *Y;                     /* [count][points] harmonics there */
-  char warning[PETVES_MAX_MESSAGE]; /* that harmonics do not resolve a shape; empty: none */
+  PetscInt its;                        /* iterations of the run */
+  PetscInt columns;                    /* of series.csv */
+  PetscInt points;                     /* of a vesicle in frames */
+  PetscInt *first;                     /* [vesicles + 1] first point of each */
+  PetscReal *Y;                        /* [count][points] harmonics there */
+  char warning[2][PETVES_MAX_MESSAGE]; /* that harmonics do not resolve a shape, or a film; empty: none */
 };
 
 /* SpaceModelCreate - the space of a resolved scene; the model's context is the SpaceModel. After an error the caller

@@ -84,6 +84,22 @@ def test_two_in_a_tube_on_ranks(tmp_path):
     assert abs(near[0]["velocity_x_2"][-1] - one["velocity_x"][-1]) > 1e-4
 
 
+def test_restart_has_the_same_bits(tmp_path):
+    scene = f"{TUBE} -tube_radius 1.3 -sphere_degree 8 -time_step 0.1 -vesicle_count 2 -vesicle_center -1.8,0,0,1.8,0,0"
+    whole = run_petves(tmp_path / "whole", f"{scene} -time_end 1")
+    run_petves(tmp_path / "half", f"{scene} -time_end 0.5")
+    rest = run_petves(tmp_path / "rest", f"{scene} -time_end 1 -restart {tmp_path}/half/checkpoint.h5")
+    for column in set(whole.series) - {"wall"}:
+        assert np.array_equal(whole.series[column][-4:], rest.series[column][-4:]), column
+
+
+def test_thin_films_are_named(tmp_path):
+    narrow = "-tube_radius 0.6045 -vesicle_reduced_volume 0.7 -vesicle_spheroid capsule -sphere_degree 24"
+    run = run_petves(tmp_path / "run", f"{TUBE} {narrow} -time_step 0.002 -time_end 0.004")
+    (warning,) = run.summary["warnings"]
+    assert "do not resolve the film along the tube after step" in warning and "try -sphere_degree 28" in warning
+
+
 def meridians(run, degree: int) -> np.ndarray:
     """Coefficients (frame, 2, degree + 1) of x and of the distance from the axis, of a run with one vesicle."""
     with h5py.File(run.folder / "run.h5") as file:
