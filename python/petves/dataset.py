@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from petves.run import Run, RunError, SurfaceRun
+from petves.run import Run, RunError, RunFolder, SurfaceRun
 
 if TYPE_CHECKING:
     import xarray
@@ -35,9 +35,10 @@ _HAVE = {
 UNITS = {name: unit for unit, names in _HAVE.items() for name in names.split()}
 
 
-def unit(name: str) -> str:
-    """Return the unit of a column or field; columns of single vesicles (``area_1``) have their column's."""
-    return UNITS.get(re.sub(r"^each_|_\d+$", "", name), "")
+def unit(name: str, run: RunFolder | None = None) -> str:
+    """Return the unit of a column or field of a run; columns of single vesicles (``area_1``) have their column's."""
+    is_energy = isinstance(run, SurfaceRun) and name.startswith("energy_")
+    return "length^5/time^2" if is_energy else UNITS.get(re.sub(r"^each_|_\d+$", "", name), "")
 
 
 def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Dataset:
@@ -88,8 +89,7 @@ def load(folder: str | Path, kind: str = "auto") -> Run | SurfaceRun | xarray.Da
     attributes |= {"folder": str(run.folder), "nu": run.nu, "reason": run.summary.get("reason", "")}
     data = xarray.Dataset(columns | values, coordinates | {"time": run.time}, attributes)
     for name, variable in data.variables.items():
-        is_energy = isinstance(run, SurfaceRun) and name.startswith("energy_")
-        variable.attrs["units"] = "length^5/time^2" if is_energy else unit(name)
+        variable.attrs["units"] = unit(name, run)
     return data
 
 

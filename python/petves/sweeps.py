@@ -159,9 +159,8 @@ def _run_point(folder: Path, point: dict[str, str], ranks: int) -> Ended:
         known = json.loads((home / "status.json").read_text())
         return known["status"], known["message"]
     words = [word for name, value in point.items() for word in (f"-{name}", value)]
-    words = ["-options_file", str(folder / "shared.opts"), *words]
     try:
-        kind, message = _launch(home, words, ranks)
+        kind, message = _launch(home, ["-options_file", str(folder / "shared.opts"), *words], ranks)
         if kind in REMEMBERED:
             write_text(home / "status.json", json.dumps({"status": kind, "message": message}) + "\n")
     except RunError as error:  # of what has ended well the next call finds the end state

@@ -6,6 +6,7 @@ from harness import SITE, run_petves, run_python
 
 import petves
 from petves.run import SurfaceRun
+from petves.views.surfaces import smooth_surfaces
 from petves.views.words import key_numbers, scene_in_words
 
 SCENE = "-dim 3 -flow_type shear -vesicle_bending 0.1 -sphere_degree 8 -time_step 0.2 -time_end 0.4 -output_every 0.2"
@@ -27,6 +28,16 @@ def test_surfaces_are_closed_and_have_their_volume(pair):
         volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
         assert 0.9 < volume / run.series[f"volume_{vesicle + 1}"][-1] < 1
         assert run.tension[-1, vesicle].max() < run.series[f"tension_max_{vesicle + 1}"][-1] + 0.1
+
+
+def test_drawn_surfaces_are_those_of_the_harmonics(tmp_path):
+    """The finer grid of an ellipsoid lies on it, and has the tension's range."""
+    run = petves.load(run_petves(tmp_path / "run", f"{SCENE} -vesicle_half_axes 1.3,0.9,0.8").folder, kind="numpy")
+    x, y, z, _ = smooth_surfaces(run, 0)[0]
+    assert abs((x / 1.3) ** 2 + (y / 0.9) ** 2 + (z / 0.8) ** 2 - 1).max() < 1e-12
+    tension = smooth_surfaces(run, -1)[0, 3]
+    known = [run.series[f"tension_{end}"][-1] for end in ("min", "max")]  # of another fine grid
+    assert np.allclose((tension.min(), tension.max()), known, atol=0.01 * np.ptp(tension))
 
 
 def test_dataset_has_units(pair):

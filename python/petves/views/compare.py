@@ -77,8 +77,7 @@ def _markers(a: RunFolder, b: RunFolder) -> str:
 def _draw(runs: tuple[RunFolder, RunFolder], path: Path) -> Path:
     figure, axes = new_figure(13, 4, columns=3)
     for run, color, style in zip(runs, ("C0", "C1"), ("-", "--")):
-        label = shown(run.folder)
-        time = run.series["time"]
+        label, time = shown(run.folder), run.series["time"]
         axes[0].plot(time, sum(run.energies().values()), style, color=color, label=label)
         axes[1].plot(time, np.unwrap(run.series["inclination"], period=np.pi), style, color=color, label=label)
         if isinstance(run, Run):

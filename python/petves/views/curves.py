@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from petves.dataset import load, unit
 from petves.quantities import line, probe, wall_shear_stress
-from petves.run import Run, RunError
+from petves.run import Run, RunError, RunFolder
 from petves.views.figures import MANY, PLAIN, Look, dress, legend_above, new_figure
 
 USUAL = ("gap", "pressure_drop", "obstacle_torque", "viscosity")  # columns drawn where a run has them
@@ -40,7 +40,7 @@ def draw_curves(x: np.ndarray, panels: list[Panel], xlabel: str, look: Look) -> 
     return figure
 
 
-def columns_of(run: Run, name: str) -> list[tuple[str, np.ndarray]]:
+def columns_of(run: RunFolder, name: str) -> list[tuple[str, np.ndarray]]:
     """Return a column with an empty label, or each of the columns name_1, name_2, ... with its number; [] if there is none."""
     if name in run.series:
         return [("", run.series[name])]
@@ -50,7 +50,7 @@ def columns_of(run: Run, name: str) -> list[tuple[str, np.ndarray]]:
     return [(key[len(name) + 1 :], values) for key, values in own.items()]
 
 
-def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> Figure | None:
+def plot_columns(run: RunFolder, columns: Sequence[str] = (), look: Look = PLAIN) -> Figure | None:
     """Draw columns of series.csv over time, a panel each: those asked for, else those of USUAL with values.
 
     A name without a number stands for all columns that have it with one (obstacle_torque). Without a column no picture.
@@ -68,7 +68,7 @@ def plot_columns(run: Run, columns: Sequence[str] = (), look: Look = PLAIN) -> F
     found = {name: columns_of(run, name) for name in columns or usual}
     if not columns:
         found = {name: curves for name, curves in found.items() if any(np.nan_to_num(y).any() for _, y in curves)}
-    panels = [(name, unit(name), curves) for name, curves in found.items()]
+    panels = [(name, unit(name, run), curves) for name, curves in found.items()]
     return draw_curves(run.series["time"], panels, "time $t$", look) if panels else None
 
 

@@ -142,15 +142,13 @@ def draw_members(axes: Axes, run: Run, frame: int, follow: int | None = None) ->
     window, (members, _) = Window(run, frame, follow), kinds_of(run)
     outlines = [(v, points) for v in range(run.vesicles) for points in window.images(v, curve=run.vesicles < CROWD)]
     colors = [f"C{members[v]}" for v, _ in outlines]
-    width = 0.8 if run.vesicles < CROWD else 0.4
-    style = dict(facecolors=colors, edgecolors="black", lw=width)
+    style = dict(facecolors=colors, edgecolors="black", lw=0.8 if run.vesicles < CROWD else 0.4)
     return axes.add_collection(PolyCollection([points for _, points in outlines], **style))
 
 
 def box_sheet(window: Window, look: Look, panels: int, bars: bool = True, last: bool = False) -> Sheet:
     """Return a sheet of panels with the window's proportions."""
-    x0, x1, y0, y1 = window.limits
-    return new_sheet(x1 - x0, y1 - y0, panels, bars, last, look)
+    return new_sheet(*(window.limits[1::2] - window.limits[::2]), panels, bars, last, look)
 
 
 def plot_field(run: Run, look: Look = PLAIN, frame: int = -1, fields: Sequence[str] = ("pressure", "speed")) -> Figure:
@@ -160,14 +158,13 @@ def plot_field(run: Run, look: Look = PLAIN, frame: int = -1, fields: Sequence[s
     """
     window = Window(run, frame, look.follow)
     sheet = box_sheet(window, look, panels=len(fields), last=run.vesicles > 0)
-    limits = run.tension_range(frame)
     drawn: list[Artist] = []
     for panel, bar, field in zip(sheet.panels, sheet.bars, fields):
         kind = field_kind(field)
         image = draw_field(panel, kind, window, look)
         frame_of = ", in the frame of the vesicle" if window.moving and field in ("speed", "stream_function") else ""
         add_bar(bar, image, kind.label + frame_of)
-        drawn = draw_membranes(panel, run, frame, limits, kind.line, look.follow)
+        drawn = draw_membranes(panel, run, frame, run.tension_range(frame), kind.line, look.follow)
         if field == "speed":
             draw_streamlines(panel, window)
     if sheet.last is not None:

@@ -72,9 +72,8 @@ def plot_run(
     if isinstance(run, SurfaceRun):
         if columns or fields or len(points) or line is not None or walls:
             raise RunError(f"{folder}: a run in three dimensions has pictures of its surfaces alone; allowed: --time")
-        figures[f"surfaces{at}"] = plot_surfaces(run, look, frame)
-        figures |= {} if at else {"course": plot_course(run, look)}
-        return _saved(run, figures, look)
+        course = {} if at else {"course": plot_course(run, look)}
+        return _saved(run, {f"surfaces{at}": plot_surfaces(run, look, frame)} | course, look)
     if columns:
         figures["series"] = plot_columns(run, columns, look)
     if len(points):

@@ -3,19 +3,39 @@
 import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import LightSource, Normalize
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from numpy.polynomial.legendre import leggauss, legvander
 
 from petves.run import SurfaceRun
-from petves.views.curves import draw_curves
+from petves.views.curves import plot_columns
 from petves.views.field import TENSION
 from petves.views.figures import PLAIN, Look, blank_figure
 
 #: Views: what is on the two axes of the picture, and from where one looks (elevation, azimuth in degrees).
 SIDES = {"$x, y$": (90, -90), "$x, z$": (0, -90), "$y, z$": (0, 0)}
-LIGHT = np.array([0.3, -0.5, 0.8])  # where it comes from
-SHADE = 0.55  # of a surface that looks away from the light
+LIGHT = LightSource(azdeg=150, altdeg=55)
+FINER = 4  # points that are drawn for each of the saved ones, along both angles
+
+
+def _basis(degree: int, theta: np.ndarray, phi: np.ndarray) -> np.ndarray:
+    """Return functions whose sums are those of the spherical harmonics, at points: shape (points, functions)."""
+    turns = [(m, turn(m * phi)) for m in range(degree + 1) for turn in (np.cos, np.sin)[: 1 + (m > 0)]]
+    return np.hstack([(np.sin(theta) ** m * t)[:, None] * legvander(np.cos(theta), degree - m) for m, t in turns])
+
+
+def smooth_surfaces(run: SurfaceRun, frame: int) -> np.ndarray:
+    """Return x, y, z and tension of all surfaces at a saved time, shape (vesicles, 4, latitudes, longitudes).
+
+    The grid is FINER times that of the saved points; beside the poles, not at them, each of its parts has a normal.
+    """
+    p, n = run.degree, FINER * (run.degree + 1)
+    down = np.append(np.repeat(np.arccos(leggauss(p + 1)[0][::-1]), 2 * p + 2), (0, np.pi))
+    around = np.append(np.tile(np.pi * np.arange(2 * p + 2) / (p + 1), p + 1), (0, 0))
+    theta, phi = np.meshgrid(np.linspace(1e-3, np.pi - 1e-3, n), np.linspace(2 * np.pi, 0, 2 * n + 1), indexing="ij")
+    finer = _basis(p, theta.ravel(), phi.ravel()) @ np.linalg.pinv(_basis(p, down, around))
+    saved = np.concatenate([run.points[frame], run.tension[frame][..., None]], axis=-1)
+    return np.moveaxis((finer @ saved).reshape(-1, *theta.shape, 4), -1, 1)
 
 
 def plot_surfaces(
@@ -25,40 +45,25 @@ def plot_surfaces(
 
     Colours span the tensions of the saved times `over`, or of that time. A figure that is given is cleared and drawn on.
     """
-    width = look.width or 7
-    figure = figure or blank_figure(width, 0.86 * width)
+    figure = figure or blank_figure(look.width or 7, 0.86 * (look.width or 7))
     figure.clear()
-    limits = run.tension_range(frame if over is None else over)
-    colours = ScalarMappable(Normalize(*limits), matplotlib.colormaps[look.cmap or "viridis"])
-    faces = run.points[frame][:, run.triangles].reshape(-1, 3, 3)  # triangle, corner, xyz
-    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    bright = SHADE + (1 - SHADE) * (1 + normals @ (LIGHT / np.linalg.norm(LIGHT))) / 2
-    rgba = colours.to_rgba(run.tension[frame][:, run.triangles].mean(axis=-1).ravel())
-    rgba[:, :3] *= bright[:, None]
-    low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
-    middle, reach = (high + low) / 2, 0.52 * (high - low).max()
-    sides = {f"{c}lim": (middle[d] - reach, middle[d] + reach) for d, c in enumerate("xyz")}
+    limits = Normalize(*run.tension_range(frame if over is None else over))
+    colours = ScalarMappable(limits, matplotlib.colormaps[look.cmap or "viridis"])
+    surfaces = smooth_surfaces(run, frame)
+    extent = np.ptp(np.moveaxis(surfaces, 1, 0).reshape(4, -1)[:3], axis=1)
     for k, (name, (elevation, azimuth)) in enumerate({"": (24, -56), **SIDES}.items()):
         axes = figure.add_axes((0.5 * (k % 2), 0.54 - 0.43 * (k // 2), 0.5, 0.43), projection="3d", proj_type="ortho")
-        axes.add_collection3d(Poly3DCollection(faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2))
-        axes.set(**sides)
-        axes.set_box_aspect((1, 1, 1), zoom=1.5)
+        for x, y, z, tension in surfaces:
+            shown = dict(rstride=1, cstride=1, linewidth=0.5, facecolors=colours.to_rgba(tension), lightsource=LIGHT)
+            axes.plot_surface(x, y, z, **shown)
+        axes.set_box_aspect(extent, zoom=0.95 * np.linalg.norm(extent) / extent.max())
         axes.view_init(elevation, azimuth)
         axes.set_axis_off()
         axes.set_title(name or f"$t$ = {run.time[frame]:.4g}", fontsize=9, y=0.96)
-    bar = figure.add_axes((0.25, 0.085, 0.5, 0.02))
-    figure.colorbar(colours, cax=bar, orientation="horizontal", label=TENSION)
+    figure.colorbar(colours, cax=figure.add_axes((0.25, 0.085, 0.5, 0.02)), orientation="horizontal", label=TENSION)
     return figure
 
 
 def plot_course(run: SurfaceRun, look: Look = PLAIN) -> Figure:
-    """Draw energy, angle and axes of the first vesicle over time."""
-    series = run.series
-    axes = [(f"{name} axis", series[f"axis_{name}"]) for name in ("long", "middle", "short")]
-    panels = [
-        ("bending energy", "length^5/time^2", [("", series["energy_bending"])]),
-        ("angle / $\\pi$", "", [("", series["inclination"] / np.pi)]),
-        ("half axes", "length", axes),
-    ]
-    return draw_curves(series["time"], panels, "time $t$", look)
+    """Draw energy, angle and axes over time, of several vesicles the angle and axes of each."""
+    return plot_columns(run, ("energy_bending", "inclination", "axis_long", "axis_middle", "axis_short"), look)

@@ -165,9 +165,10 @@ def _motions(run: RunFolder) -> list[tuple[str, str]]:
     angle, one = np.angle(turned) / 2, run.vesicles == 1
     rows = [(f"last {'inclination' if one else 'mean axis'}", f"{angle:.4f} rad = {np.degrees(angle):.2f}°")]
     rows.append(("last order |<exp(2 i inclination)>|", "" if one else f"{abs(turned):.3f}"))
-    if isinstance(run, SurfaceRun):
-        return [*rows, ("last rotation about z", _span(run.each("rotation_z")[-1]))]
-    return [*rows, ("last tank-treading frequency", _span(run.each("frequency")[-1]))]
+    turns = (
+        {"rotation_z": "rotation about z"} if isinstance(run, SurfaceRun) else {"frequency": "tank-treading frequency"}
+    )
+    return rows + [(f"last {told}", _span(run.each(name)[-1])) for name, told in turns.items()]
 
 
 def _forces(run: RunFolder) -> list[tuple[str, str]]:
