@@ -23,6 +23,7 @@ from studies.gallery.pressed import SCENE as PRESSED
 from studies.gallery.reynolds import SCENE as REYNOLDS
 from studies.gallery.scene import Scene
 from studies.gallery.settling import SCENE as SETTLING
+from studies.gallery.space import SCENE as SPACE
 from studies.gallery.stenosis import SCENE as STENOSIS
 from studies.gallery.suspension import SCENE as SUSPENSION
 from studies.gallery.tumbling import SCENE as TUMBLING
@@ -30,6 +31,7 @@ from studies.gallery.vortices import SCENE as VORTICES
 
 SCENES = (
     TUMBLING,
+    SPACE,
     PASSING,
     PRESSED,
     VORTICES,

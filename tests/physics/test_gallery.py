@@ -12,7 +12,7 @@ from petves.measures import half_periods
 from petves.run import Run as Files
 from studies.common.curves import trigonometric
 from studies.gallery import bifurcation, capillary, constriction, couette, passing
-from studies.gallery import settling, stenosis, suspension, tumbling, vortices
+from studies.gallery import settling, space, stenosis, suspension, tumbling, vortices
 from studies.gallery.page import SCENES, TEMPLATE, filled
 from studies.gallery.scene import least
 
@@ -52,6 +52,12 @@ def test_tumbling(tmp_path):
     half = half_periods(series["time"], series["inclination"])
     assert half == pytest.approx([tumbling.EXACT["free", 10][0]], rel=5e-4)
     assert tumbling.keller_skalak_half(0.7, 10) < half[0]
+
+
+def test_space(tmp_path):
+    """The steady angle of the independent calculation, to 1e-4 of it."""
+    angle = run_file("space", tmp_path)["inclination"][-1] / np.pi
+    assert angle == pytest.approx(space.STEADY[space.SHOWN], rel=1e-4)
 
 
 def test_keller_skalak():
