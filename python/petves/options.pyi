@@ -51,7 +51,7 @@ class Options(TypedDict, total=False):
     vesicle_spacing: Value  # marker spacing ds/h; 0: by the shape with -coupling_near_field exact (45 markers, more on thin vesicles, at most 2 h apart), else the kernel's (ib6 1.75, cbs54 1.5)
     vesicle_markers: Value  # number of markers of each vesicle, instead of the spacing; 0 takes the spacing
     vesicle_allow_close_markers: Literal['true', 'false'] | None  # accept spacings below the least: 0.3 h with -coupling_near_field exact, else the kernel's (ib6 1.25, cbs54 1)
-    vesicle_spheroid: Literal['prolate', 'oblate'] | None  # three dimensions: initial shape, a spheroid about -vesicle_axis
+    vesicle_spheroid: Literal['prolate', 'oblate', 'capsule'] | None  # three dimensions: initial shape, a spheroid about -vesicle_axis, or nearly a cylinder with round ends
     vesicle_radius: Value  # R0 of the volume 4 pi R0^3/3, one for all, or one a vesicle (length)
     vesicle_reduced_volume: Value  # v = 6 sqrt(pi) volume/area^(3/2), one for all, or one a vesicle
     vesicle_half_axes: Value  # of an ellipsoid, in place of radius and reduced volume, the first along -vesicle_axis; three for all, or three a vesicle (length)

@@ -125,7 +125,7 @@ class Results(Kept):
 def _made(case: Case, ranks: int) -> dict[str, object]:
     """Run a case; return its entry."""
     words = [word for pair in case.options.items() for word in pair]
-    limited = () if case.options.get("-dim") == "3" else ("edge_ratio", "area_error", "length_error")
+    limited = () if "-dim" in case.options else ("edge_ratio", "area_error", "length_error")
     limits = [word for name in limited for word in (f"-limit_{name}", "0")]
     with tempfile.TemporaryDirectory() as name:
         folder, before = Path(name), cpu_seconds()

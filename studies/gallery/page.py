@@ -21,6 +21,7 @@ from studies.gallery.passing import SCENE as PASSING
 from studies.gallery.posts import SCENE as POSTS
 from studies.gallery.pressed import SCENE as PRESSED
 from studies.gallery.reynolds import SCENE as REYNOLDS
+from studies.gallery.revolved import SCENE as REVOLVED
 from studies.gallery.scene import Scene
 from studies.gallery.settling import SCENE as SETTLING
 from studies.gallery.space import SCENE as SPACE
@@ -32,6 +33,7 @@ from studies.gallery.vortices import SCENE as VORTICES
 SCENES = (
     TUMBLING,
     SPACE,
+    REVOLVED,
     PASSING,
     PRESSED,
     VORTICES,
