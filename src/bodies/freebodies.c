@@ -92,18 +92,10 @@ PetscErrorCode FreeBodiesBorder(Obstacles o, PetscInt begin, PetscInt end, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FreeBodiesFarthest(Obstacles o, Vec way, PetscReal *farthest) {
-  const PetscScalar *all;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(way, &all));
-  for (PetscInt b = 0; b < o->layout->bodies; b++) {
-    const PetscScalar *one = all + 3 * (o->motion[b].free - 1);
-    if (!o->motion[b].free) continue;
-    const PetscReal turn = o->motion[b].turned ? PetscAbsReal(one[2]) * ObstacleReach(o, b) : 0;
-    *farthest = PetscMax(*farthest, PetscHypotReal(one[0], one[1]) + turn);
-  }
-  PetscCall(VecRestoreArrayRead(way, &all));
-  PetscFunctionReturn(PETSC_SUCCESS);
+void FreeBodiesFarthest(Obstacles o, Vec from, Vec to, PetscReal *farthest) {
+  for (PetscInt b = 0; b < o->layout->bodies; b++)
+    if (o->motion[b].free)
+      *farthest = PetscMax(*farthest, ObstacleStride(o, b, (Instant){.place = from}, (Instant){.place = to}));
 }
 
 PetscErrorCode FreeBodiesMove(Obstacles o, Vec force, PetscReal time, Vec place) {

@@ -42,9 +42,9 @@ static inline PetscReal FreeBodyUnit(Obstacles o, PetscInt curve, PetscInt numbe
   return number < 2 ? o->beta : o->beta / ObstacleRadius(o, curve);
 }
 
-/* FreeBodiesFarthest - raises `farthest` to the largest way of a marker of all bodies whose places change by way[3
-   free], or speed. Not collective. */
-PETSC_EXTERN PetscErrorCode FreeBodiesFarthest(Obstacles obstacles, Vec way, PetscReal *farthest);
+/* FreeBodiesFarthest - raises `farthest` to the farthest way of a marker of all bodies from one place to another. Not
+   collective. */
+PETSC_EXTERN void FreeBodiesFarthest(Obstacles obstacles, Vec from, Vec to, PetscReal *farthest);
 
 /* FreeBodiesMove - place += time q, with the q of a state's force. FreeBodiesTurn - the force turns with the bodies
    from where they have been placed to this place. Collective. */

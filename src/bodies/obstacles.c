@@ -220,34 +220,24 @@ PetscErrorCode ObstaclesCheck(Obstacles o, Scene scene, Instant at, char message
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal ObstacleReach(Obstacles o, PetscInt b) {
+PetscReal ObstacleStride(Obstacles o, PetscInt b, Instant from, Instant to) {
   const PetscReal *center = o->motion[b].center;
   PetscReal reach = 0;
   for (PetscInt k = o->layout->start[b]; k < o->layout->start[b + 1]; k++)
     reach = PetscMax(reach, PetscHypotReal(o->rest[2 * k] - center[0], o->rest[2 * k + 1] - center[1]));
-  return reach;
+  return MotionStride(&o->motion[b], from, to, reach);
 }
 
-/* Half the width of a curve, area over half its length. */
-static PetscReal ObstacleHalfWidth(Obstacles o, PetscInt b) {
-  const PetscInt n = LayoutCount(o->layout, b);
-  const PetscReal *X = o->rest + 2 * o->layout->start[b];
-  PetscReal area = 0, length = 0;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal *A = X + 2 * k, *B = X + 2 * ((k + 1) % n);
-    area += 0.5 * (A[0] * B[1] - B[0] * A[1]);
-    length += PetscHypotReal(B[0] - A[0], B[1] - A[1]);
-  }
-  return 2 * area / length;
-}
-
+/* Half the width of a curve is its area over half its length. */
 PetscErrorCode ObstaclesCheckStride(Obstacles o, Instant from, Instant to, char message[PETVES_MAX_MESSAGE]) {
+  PetscReal center[2], area;
   PetscFunctionBeginUser;
   message[0] = 0;
   if (o->all->bodies == 1) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < o->layout->bodies && !*message; b++) {
     if (!o->motion[b].carried) continue;
-    const PetscReal half = ObstacleHalfWidth(o, b), stride = MotionStride(&o->motion[b], from, to, ObstacleReach(o, b));
+    PetscCall(ObstacleCentroid(o, b, center, &area));
+    const PetscReal half = area / (PETSC_PI * ObstacleRadius(o, b)), stride = ObstacleStride(o, b, from, to);
     if (stride > half)
       PetscCall(PetscSNPrintf(message, PETVES_MAX_MESSAGE,
                               "obstacle %" PetscInt_FMT " would go by %.3g in one step, more than half its width, %.3g",

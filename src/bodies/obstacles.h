@@ -66,8 +66,8 @@ PETSC_EXTERN PetscErrorCode ObstaclesCheck(Obstacles obstacles, Scene scene, Ins
 PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, Instant from, Instant to,
                                                  char message[PETVES_MAX_MESSAGE]);
 
-/* ObstacleReach - how far a curve's markers are from its center at most. Not collective. */
-PETSC_EXTERN PetscReal ObstacleReach(Obstacles obstacles, PetscInt curve);
+/* ObstacleStride - the farthest way of a marker of a curve from one instant to another. Not collective. */
+PETSC_EXTERN PetscReal ObstacleStride(Obstacles obstacles, PetscInt curve, Instant from, Instant to);
 
 /* ObstaclesCurves - markers of all obstacles at an instant as others see them, X[2W]: clockwise the curves that have
    the fluid inside. ObstaclesOrder - other numbers of all markers in that order, seen[2W], which may be own. Not

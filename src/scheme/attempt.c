@@ -239,10 +239,7 @@ PetscErrorCode CoupledEstimate(Scheme s, PetscReal *error) {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(d->Xstar, d->Y));
   PetscCall(LargestDifference(s, d->next.X, d->Y, &found[0]));
-  if (d->place) {
-    PetscCall(VecWAXPY(d->history.guess[0], -1, d->place, d->next.place));
-    PetscCall(FreeBodiesFarthest(s->coupling->bodies->obstacles, d->history.guess[0], &found[0]));
-  }
+  if (d->place) FreeBodiesFarthest(s->coupling->bodies->obstacles, d->place, d->next.place, &found[0]);
   if (PetscIsNanReal(found[0])) found[1] = 1; /* a maximum may lose it */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPIU_REAL, MPI_MAX, s->membrane->layout->comm));
   *error = found[1] > 0 ? NAN : found[0] / SmallestRadius(s);
@@ -261,10 +258,12 @@ static PetscErrorCode Miss(Scheme s, Coupled *d, PetscInt count, PetscBool rates
   PetscCall(LargestDifference(s, rates ? d->next.U : d->next.X, d->Y, largest));
   if (!d->place) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(HistorySum(count, star, 1, rates ? STATES(s, solid) : STATES(s, place), h->guess[rates]));
-  PetscCall(VecAXPY(h->guess[rates], -1, rates ? d->next.solid : d->next.place));
-  if (rates) PetscCall(VecSet(h->guess[0], 0));
-  if (rates) PetscCall(FreeBodiesMove(o, h->guess[1], 1, h->guess[0]));
-  PetscCall(FreeBodiesFarthest(o, h->guess[0], largest));
+  if (rates) { /* in a time of 1 */
+    PetscCall(VecAXPY(h->guess[1], -1, d->next.solid));
+    PetscCall(VecCopy(d->next.place, h->guess[0]));
+    PetscCall(FreeBodiesMove(o, h->guess[1], 1, h->guess[0]));
+  }
+  FreeBodiesFarthest(o, d->next.place, h->guess[0], largest);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
