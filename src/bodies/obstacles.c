@@ -306,18 +306,16 @@ PetscErrorCode ObstaclesTarget(Obstacles o, const Flow *flow, Vec k, char messag
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstaclesLoads(Obstacles o, Instant at, const PetscScalar F[], ObstacleLoad load[]) {
+PetscErrorCode ObstaclesLoads(Obstacles o, Instant at, const PetscScalar F[], PetscReal load[]) {
   const Layout l = o->layout;
   PetscReal *all;
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(load, l->bodies));
+  PetscCall(PetscArrayzero(load, 3 * l->bodies));
   PetscCall(PetscMalloc1(2 * l->M, &all));
   for (PetscInt b = l->own; b < l->end; b++) {
     const BodyPose p = MotionPose(&o->motion[b], at);
-    PetscReal sum[3] = {0, 0, 0};
     ObstacleCarry(o, b, at, all);
-    MotionSum(p.center, LayoutCount(l, b), all + 2 * l->start[b], F + 2 * LayoutOffset(l, b), sum);
-    load[b] = (ObstacleLoad){{sum[0], sum[1]}, sum[2]};
+    MotionSum(p.center, LayoutCount(l, b), all + 2 * l->start[b], F + 2 * LayoutOffset(l, b), load + 3 * b);
   }
   PetscCall(PetscFree(all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)(3 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));

@@ -93,17 +93,6 @@ PETSC_EXTERN void ObstaclesScale(Obstacles obstacles, PetscReal weight, PetscBoo
 PETSC_EXTERN PetscErrorCode ObstaclesTarget(Obstacles obstacles, const Flow *flow, Vec k,
                                             char message[PETVES_MAX_MESSAGE]);
 
-/* Of the fluid on an obstacle, a unit of depth, density 1. */
-typedef struct {
-  PetscReal force[2]; /* (length^3/time^2) */
-  PetscReal torque;   /* about where its center is (length^4/time^2) */
-} ObstacleLoad;
-
-/* ObstacleLoadAdd - to += scale times a load that acts at the distance d (length) from the place of `to`. */
-static inline void ObstacleLoadAdd(ObstacleLoad *to, PetscReal scale, const ObstacleLoad *from, const PetscReal d[2]) {
-  for (int c = 0; c < 2; c++) to->force[c] += scale * from->force[c];
-  to->torque += scale * (from->torque + d[0] * from->force[1] - d[1] * from->force[0]);
-}
-
-/* ObstaclesLoads - of all obstacles at an instant, load[curves], from the own F[2w]. Collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesLoads(Obstacles obstacles, Instant at, const PetscScalar F[], ObstacleLoad load[]);
+/* ObstaclesLoads - of the fluid on all obstacles at an instant, a unit of depth, density 1, from the own F[2w]: load[3
+   curves], the force (length^3/time^2) and the torque about the center (length^4/time^2). Collective. */
+PETSC_EXTERN PetscErrorCode ObstaclesLoads(Obstacles obstacles, Instant at, const PetscScalar F[], PetscReal load[]);

@@ -31,20 +31,21 @@ static void ObstacleRowName(const SceneObstacles *o, PetscInt k, char name[RECOR
 }
 
 /* to += scale (force and torque, about c, of a load at a place). The nearest images count. */
-static void ObstacleAddLoad(Grid g, PetscReal scale, const ObstacleLoad *from, const PetscReal place[2],
-                            const PetscReal c[2], ObstacleLoad *to) {
+static void ObstacleAddLoad(Grid g, PetscReal scale, const PetscReal from[3], const PetscReal place[2],
+                            const PetscReal c[2], PetscReal to[3]) {
   PetscReal d[2];
   for (int k = 0; k < 2; k++) {
     const PetscReal period = g->hi[k] - g->lo[k];
     d[k] = place[k] - c[k];
     if (!g->wall[k]) d[k] -= period * PetscFloorReal(d[k] / period + 0.5);
+    to[k] += scale * from[k];
   }
-  ObstacleLoadAdd(to, scale, from, d);
+  to[2] += scale * (from[2] + d[0] * from[1] - d[1] * from[0]);
 }
 
 /* The forces of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, and its torque about
-   the centroid: load[vesicles], and the centroids place[2 vesicles]. */
-static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal place[]) {
+   the centroid: load[3 vesicles], and the centroids place[2 vesicles]. */
+static PetscErrorCode VesicleLoads(Scheme s, PetscReal load[], PetscReal place[]) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
   const PetscScalar *X;
@@ -58,9 +59,7 @@ static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal plac
     Measures measures;
     MembraneMeasure(m, v, X + 2 * at, &measures);
     for (int c = 0; c < 2; c++) place[2 * v + c] = measures.center[c];
-    for (PetscInt k = 2 * at; k < 2 * (at + LayoutCount(l, v)); k += 2)
-      ObstacleLoadAdd(&load[v], 1, &(ObstacleLoad){{F[k], F[k + 1]}, 0},
-                      (PetscReal[]){X[k] - measures.center[0], X[k + 1] - measures.center[1]});
+    MotionSum(measures.center, LayoutCount(l, v), X + 2 * at, F + 2 * at, load + 3 * v);
   }
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCall(PetscFree(F));
@@ -73,30 +72,29 @@ static PetscErrorCode VesicleLoads(Scheme s, ObstacleLoad load[], PetscReal plac
    the momentum of the fluid inside balances:
      load on the container = sum of the loads on vesicles inside - sum of the loads on posts inside.
    With inertia the load on a container that moves is not known. */
-static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
+static PetscErrorCode ContainerLoads(Scheme s, PetscReal load[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const SceneObstacles *own = &s->scene->obstacles;
   const PetscInt vesicles = s->membrane->layout->bodies, curves = o->layout->bodies;
-  ObstacleLoad *inner;
-  PetscReal *place;
+  PetscReal *inner, *place;
   PetscFunctionBeginUser;
   if (!s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(vesicles + curves, &inner, 2 * (vesicles + curves), &place));
+  PetscCall(PetscCalloc2(3 * (vesicles + curves), &inner, 2 * (vesicles + curves), &place));
   PetscCall(VesicleLoads(s, inner, place));
+  PetscCall(PetscArraycpy(inner + 3 * vesicles, load, 3 * curves));
   for (PetscInt b = 0; b < curves; b++) {
     const BodyPose pose = MotionPose(&o->motion[b], StateInstant(&s->state));
     for (int c = 0; c < 2; c++) place[2 * (vesicles + b) + c] = pose.center[c];
-    inner[vesicles + b] = load[b];
   }
   for (PetscInt b = 0; b < curves; b++) {
     const BodyMotion *m = &o->motion[b];
     const PetscBool moves = m->velocity[0] != 0 || m->velocity[1] != 0 || m->rotation != 0;
     if (!o->container[b] || (!s->fluid->steady && !moves)) continue;
-    load[b] = s->fluid->steady ? (ObstacleLoad){{0, 0}, 0} : (ObstacleLoad){{NAN, NAN}, NAN};
+    for (int c = 0; c < 3; c++) load[3 * b + c] = s->fluid->steady ? 0 : NAN;
     for (PetscInt k = 0; k < vesicles + curves; k++)
       if (own->holder[k] == b)
-        ObstacleAddLoad(s->fluid->grid, k < vesicles ? 1 : -1, &inner[k], place + 2 * k, place + 2 * (vesicles + b),
-                        &load[b]);
+        ObstacleAddLoad(s->fluid->grid, k < vesicles ? 1 : -1, inner + 3 * k, place + 2 * k, place + 2 * (vesicles + b),
+                        load + 3 * b);
   }
   PetscCall(PetscFree2(inner, place));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -106,13 +104,12 @@ static PetscErrorCode ContainerLoads(Scheme s, ObstacleLoad load[]) {
 static PetscErrorCode ObstaclesRow(Scheme s, PetscReal values[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const PetscScalar *F;
-  ObstacleLoad *load;
-  PetscReal *q;
+  PetscReal *load, *q;
   Drive drive;
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscInt curves = o->layout->bodies, count = ObstacleRowCount(&s->scene->obstacles);
-  PetscCall(PetscMalloc2(curves, &load, 3 * o->free->M, &q));
+  PetscCall(PetscMalloc2(3 * curves, &load, 3 * o->free->M, &q));
   PetscCall(VecGetArrayRead(s->state.solid, &F));
   PetscCall(LayoutGather(o->free, 3, F + 2 * o->layout->n, q));
   PetscCall(ObstaclesLoads(o, StateInstant(&s->state), F, load));
@@ -124,9 +121,9 @@ static PetscErrorCode ObstaclesRow(Scheme s, PetscReal values[]) {
   for (PetscInt b = 0; b < curves; b++) {
     const BodyPose pose = MotionPose(&o->motion[b], StateInstant(&s->state));
     const PetscInt free = 3 * (o->motion[b].free - 1);
-    const PetscReal own[] = {load[b].force[0],
-                             load[b].force[1],
-                             load[b].torque,
+    const PetscReal own[] = {load[3 * b],
+                             load[3 * b + 1],
+                             load[3 * b + 2],
                              pose.center[0], /* from here on where obstacles move */
                              pose.center[1],
                              pose.angle,
