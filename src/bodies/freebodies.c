@@ -67,12 +67,18 @@ void FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
   }
 }
 
-PetscErrorCode FreeBodiesBorder(Obstacles o, PetscInt begin, PetscInt end, PetscReal inertia, const PetscReal mass[],
-                                PetscReal A[]) {
+PetscErrorCode FreeBodiesBlock(Obstacles o, PetscInt begin, PetscInt end, PetscReal h, PetscReal inertia,
+                               const PetscReal mass[], PetscReal A[]) {
   const PetscInt first = 2 * o->layout->start[begin], markers = 2 * o->layout->start[end] - first;
   PetscInt at = markers, n = markers;
   PetscFunctionBeginUser;
-  for (PetscInt b = begin; b < end; b++) n += o->motion[b].free ? 3 : 0;
+  for (PetscInt k = 0; k < markers * markers; k++) A[k] /= PetscSqr(h);
+  for (PetscInt b = begin; b < end; b++) {
+    const PetscInt low = 2 * o->layout->start[b], high = 2 * o->layout->start[b + 1];
+    for (PetscInt j = low; j < high; j++)
+      for (PetscInt i = low; i < high; i++) A[(j - first) * markers + i - first] += o->beta * o->N[i] * o->N[j];
+    n += o->motion[b].free ? 3 : 0;
+  }
   for (PetscInt k = markers - 1; k >= 0 && n > markers; k--) {
     PetscCall(PetscArraymove(A + k * n, A + k * markers, markers));
     PetscCall(PetscArrayzero(A + k * n + markers, n - markers));

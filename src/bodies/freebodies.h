@@ -29,15 +29,15 @@ PETSC_EXTERN void FreeBodiesSum(Obstacles obstacles, const PetscScalar F[], Pets
    the load[3 own free]. Not collective. */
 PETSC_EXTERN void FreeBodiesBalance(Obstacles obstacles, const PetscReal load[], PetscScalar F[]);
 
-/* FreeBodiesBorder - A, the dense block of the markers of curves begin .. end - 1, becomes that of F and, behind them,
-   q/unit m of the free bodies among them,
+/* FreeBodiesBlock - A, h^2 times the mobility C of the markers of curves begin .. end - 1, becomes the block of F and,
+   behind them, q/unit m of the free bodies among them,
 
-       A F + m R q = r,   unit (R^T F - inertia M q) = unit s,
+       (C + beta N N^T) F + m R q = r,   unit (R^T F - inertia M q) = unit s,
 
    with the mass M[3 free] (NULL: 0). A has room for it. FreeBodyUnit - unit of one of the three numbers of a body, by
    which both parts of the matrix are of one size. Not collective. */
-PETSC_EXTERN PetscErrorCode FreeBodiesBorder(Obstacles obstacles, PetscInt begin, PetscInt end, PetscReal inertia,
-                                             const PetscReal mass[], PetscReal A[]);
+PETSC_EXTERN PetscErrorCode FreeBodiesBlock(Obstacles obstacles, PetscInt begin, PetscInt end, PetscReal h,
+                                            PetscReal inertia, const PetscReal mass[], PetscReal A[]);
 static inline PetscReal FreeBodyUnit(Obstacles o, PetscInt curve, PetscInt number) {
   return number < 2 ? o->beta : o->beta / ObstacleRadius(o, curve);
 }

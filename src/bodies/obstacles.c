@@ -257,12 +257,6 @@ void ObstaclesRows(Obstacles o, const PetscScalar F[], PetscScalar y[]) {
   }
 }
 
-void ObstaclesBlock(Obstacles o, PetscInt b, PetscReal alpha, PetscInt lda, PetscReal A[]) {
-  const PetscReal *N = o->N + 2 * o->layout->start[b];
-  for (PetscInt j = 0; j < 2 * LayoutCount(o->layout, b); j++)
-    for (PetscInt i = 0; i < 2 * LayoutCount(o->layout, b); i++) A[j * lda + i] += alpha * o->beta * N[i] * N[j];
-}
-
 void ObstaclesTurn(Obstacles o, Instant from, Instant to, PetscScalar F[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++) {

@@ -75,12 +75,10 @@ PETSC_EXTERN PetscReal ObstacleStride(Obstacles obstacles, PetscInt curve, Insta
 PETSC_EXTERN void ObstaclesCurves(Obstacles obstacles, Instant at, PetscReal X[]);
 PETSC_EXTERN void ObstaclesOrder(Obstacles obstacles, const PetscReal own[], PetscReal seen[]);
 
-/* ObstaclesRows - y += beta N N^T F, what obstacles give their rows themselves, of own F[2w], y[2w]. ObstaclesBlock -
-   A += alpha times that as a matrix, of one curve's markers, columns lda apart. ObstaclesTurn - own vectors at the
-   markers as the bodies stood at one instant, F[2w], become those at another, with what stands behind them of free
-   bodies. Not collective. */
+/* ObstaclesRows - y += beta N N^T F, what obstacles give their rows themselves, of own F[2w], y[2w]. ObstaclesTurn -
+   own vectors at the markers as the bodies stood at one instant, F[2w], become those at another, with what stands
+   behind them of free bodies. Not collective. */
 PETSC_EXTERN void ObstaclesRows(Obstacles obstacles, const PetscScalar F[], PetscScalar y[]);
-PETSC_EXTERN void ObstaclesBlock(Obstacles obstacles, PetscInt curve, PetscReal alpha, PetscInt lda, PetscReal A[]);
 PETSC_EXTERN void ObstaclesTurn(Obstacles obstacles, Instant from, Instant to, PetscScalar F[]);
 
 /* ObstaclesScale - multiply the residuals y of the own rows by weight/ds, those of force and torque on free bodies by

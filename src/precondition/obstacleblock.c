@@ -94,25 +94,16 @@ static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal A[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block of the markers times h^2, on root. */
-static PetscErrorCode AssembleObstacles(ObstacleBlock b, PetscReal A[]) {
+/* A h^2 of the mean mobility, on root. */
+static PetscErrorCode MobilityByMean(ObstacleBlock b, PetscReal A[]) {
   const Obstacles o = b->obstacles;
-  const Layout l = o->layout;
-  const PetscInt n = 2 * l->M;
-  const MarkerRange solid = {o->all->M - l->M, l->M};
-  const PetscReal h2 = PetscSqr(b->coupling->fluid->grid->h);
+  const MarkerRange solid = {o->all->M - o->layout->M, o->layout->M};
   MeanMobility mobility;
   PetscFunctionBeginUser;
-  if (IsBySolves(b))
-    PetscCall(MobilityBySolves(b, A));
-  else {
-    PetscCall(MeanMobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
-    PetscCall(MeanMobilitySetUp(mobility, b->coupling->fluid->alpha));
-    PetscCall(MeanMobilityOnRoot(mobility, &solid, &solid, b->root, A));
-    PetscCall(MeanMobilityDestroy(&mobility));
-  }
-  for (PetscInt v = 0; v < l->bodies && l->rank == b->root; v++)
-    ObstaclesBlock(o, v, h2, n, A + 2 * l->start[v] * (n + 1));
+  PetscCall(MeanMobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
+  PetscCall(MeanMobilitySetUp(mobility, b->coupling->fluid->alpha));
+  PetscCall(MeanMobilityOnRoot(mobility, &solid, &solid, b->root, A));
+  PetscCall(MeanMobilityDestroy(&mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,15 +122,14 @@ static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
 static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
   const Layout l = b->obstacles->layout;
   const InnerFluid inner = b->coupling->mobility->inner;
-  const PetscReal over = 1 / PetscSqr(b->coupling->fluid->grid->h);
   PetscBool done = PETSC_TRUE;
   PetscReal *A;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(b->n * b->n, &A));
-  PetscCall(AssembleObstacles(b, A));
+  PetscCall(IsBySolves(b) ? MobilityBySolves(b, A) : MobilityByMean(b, A));
   if (l->rank == b->root) {
-    for (PetscInt k = 0; k < 4 * l->M * l->M; k++) A[k] *= over;
-    PetscCall(FreeBodiesBorder(b->obstacles, 0, l->bodies, b->age.made_for, inner ? inner->mass : NULL, A));
+    PetscCall(FreeBodiesBlock(b->obstacles, 0, l->bodies, b->coupling->fluid->grid->h, b->age.made_for,
+                              inner ? inner->mass : NULL, A));
     PetscCall(SymmetricInvert(b->n, A, b->inverse, &done));
   }
   PetscCall(PetscFree(A));

@@ -11,7 +11,7 @@
    With X = A^-1 K, K the obstacles' velocity by forces on the vesicles, the obstacles are eliminated: the vesicles'
    block gets the Schur complement Mob - K^T X, and X carries right-hand sides and forces across.
 
-   Free bodies have their velocities q and rows in it (FreeBodiesBorder). The inertia of the fluid inside, which the
+   Free bodies have their velocities q and rows in it (FreeBodiesBlock). The inertia of the fluid inside, which the
    near field bounds, is left to the iterations.
 
    One rank, the owner of the first body, has the factor; all ranks make parts of A. */

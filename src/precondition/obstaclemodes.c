@@ -125,15 +125,11 @@ static PetscErrorCode AssembleCurve(ObstacleModes s, MeanMobility mobility, Pets
                                     PetscReal D[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const Layout l = o->layout;
-  const PetscInt n = 2 * LayoutCount(l, v);
-  const MarkerRange own = {o->all->M - l->M + l->start[v], n / 2};
-  const PetscReal h2 = PetscSqr(s->coupling->fluid->grid->h);
+  const MarkerRange own = {o->all->M - l->M + l->start[v], LayoutCount(l, v)};
   const InnerFluid inner = s->coupling->mobility->inner;
   PetscFunctionBeginUser;
   PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
-  for (PetscInt k = 0; k < n * n; k++) D[k] /= h2;
-  ObstaclesBlock(o, v, 1, n, D);
-  PetscCall(FreeBodiesBorder(o, v, v + 1, alpha, inner ? inner->mass : NULL, D));
+  PetscCall(FreeBodiesBlock(o, v, v + 1, s->coupling->fluid->grid->h, alpha, inner ? inner->mass : NULL, D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
