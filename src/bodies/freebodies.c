@@ -3,7 +3,7 @@
 PetscErrorCode FreeBodiesCreateVecs(Obstacles o, Vec *force, Vec *place) {
   PetscScalar *y;
   PetscFunctionBeginUser;
-  PetscCall(VecCreateMPI(o->layout->comm, 2 * o->layout->n + FreeBodiesOwn(o), PETSC_DETERMINE, force));
+  PetscCall(VecCreateMPI(o->layout->comm, 2 * o->layout->n + 3 * o->free->n, PETSC_DETERMINE, force));
   if (!o->free->M) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, 3 * o->free->M, place));
   PetscCall(VecGetArray(*place, &y));
@@ -26,9 +26,8 @@ static void FreeBodyCarry(Obstacles o, PetscInt b, PetscReal alpha, const PetscS
 }
 
 void FreeBodiesCarry(Obstacles o, PetscReal alpha, const PetscReal ratio[], const PetscScalar q[], PetscScalar U[]) {
-  const PetscScalar *own = q - 2 * o->layout->n;
   for (PetscInt b = o->layout->own; b < o->layout->end; b++)
-    if (o->motion[b].free) FreeBodyCarry(o, b, ratio ? alpha * ratio[b] : alpha, own + FreeBodyAt(o, b), U);
+    if (o->motion[b].free) FreeBodyCarry(o, b, ratio ? alpha * ratio[b] : alpha, q + FreeBodyAt(o, b), U);
 }
 
 void FreeBodiesShift(Obstacles o, Vec place, PetscScalar X[]) {
@@ -44,8 +43,7 @@ void FreeBodiesSum(Obstacles o, const PetscScalar F[], PetscScalar sum[]) {
   for (PetscInt b = l->own; b < l->end; b++) {
     const BodyPose p = MotionPose(&o->motion[b], o->at);
     if (!o->motion[b].free) continue;
-    MotionSum(p.center, LayoutCount(l, b), o->X + 2 * l->start[b], F + 2 * LayoutOffset(l, b),
-              sum + FreeBodyAt(o, b) - 2 * l->n);
+    MotionSum(p.center, LayoutCount(l, b), o->X + 2 * l->start[b], F + 2 * LayoutOffset(l, b), sum + FreeBodyAt(o, b));
   }
 }
 
@@ -54,7 +52,7 @@ void FreeBodiesBalance(Obstacles o, const PetscReal load[], PetscScalar F[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++) {
     const PetscInt n = LayoutCount(l, b);
-    const PetscReal *X = o->X + 2 * l->start[b], *own = load + FreeBodyAt(o, b) - 2 * l->n;
+    const PetscReal *X = o->X + 2 * l->start[b], *own = load + FreeBodyAt(o, b);
     const BodyPose p = MotionPose(&o->motion[b], o->at);
     PetscReal mean[2] = {0, 0}, squares = 0;
     if (!o->motion[b].free) continue;

@@ -261,7 +261,7 @@ void ObstaclesTurn(Obstacles o, Instant from, Instant to, PetscScalar F[]) {
   const Layout l = o->layout;
   for (PetscInt b = l->own; b < l->end; b++) {
     MotionTurn(&o->motion[b], from, to, LayoutCount(l, b), F + 2 * LayoutOffset(l, b));
-    if (o->motion[b].free) MotionTurn(&o->motion[b], from, to, 1, F + FreeBodyAt(o, b));
+    if (o->motion[b].free) MotionTurn(&o->motion[b], from, to, 1, F + 2 * l->n + FreeBodyAt(o, b));
   }
 }
 
@@ -273,7 +273,7 @@ void ObstaclesScale(Obstacles o, PetscReal weight, PetscBool inverse, PetscScala
     for (PetscInt k = at; k < at + 2 * LayoutCount(l, b); k++) y[k] *= factor;
     for (int c = 0; c < 3 && o->motion[b].free; c++) {
       const PetscReal row = 1 / (o->ds[b] * (c < 2 ? 1 : ObstacleRadius(o, b)));
-      y[FreeBodyAt(o, b) + c] *= inverse ? 1 / row : row;
+      y[2 * l->n + FreeBodyAt(o, b) + c] *= inverse ? 1 / row : row;
     }
   }
 }

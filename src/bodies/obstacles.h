@@ -41,14 +41,10 @@ struct _p_Obstacles {
 PETSC_EXTERN PetscErrorCode ObstaclesCreate(Scene scene, Layout all, Obstacles *obstacles);
 PETSC_EXTERN PetscErrorCode ObstaclesDestroy(Obstacles *obstacles);
 
-/* FreeBodyAt - where a free body's three numbers stand in the arrays of unknowns, residuals and forces (freebodies.h);
-   FreeBodiesOwn - how many of them this rank has. ObstacleRadius - that of a circle of the curve's length. Not
-   collective. */
+/* FreeBodyAt - where the three numbers of an own free body stand among those of own free bodies. ObstacleRadius - that
+   of a circle of the curve's length. Not collective. */
 static inline PetscInt FreeBodyAt(Obstacles o, PetscInt curve) {
-  return 2 * o->layout->n + 3 * (o->motion[curve].free - 1 - o->free->first);
-}
-static inline PetscInt FreeBodiesOwn(Obstacles o) {
-  return 3 * o->free->n;
+  return 3 * (o->motion[curve].free - 1 - o->free->first);
 }
 static inline PetscReal ObstacleRadius(Obstacles o, PetscInt curve) {
   return o->ds[curve] * LayoutCount(o->layout, curve) / (2 * PETSC_PI);

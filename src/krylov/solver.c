@@ -132,7 +132,7 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
     PetscCall(PetscArraycpy(a + u->velocity, k + u->velocity, BodiesObstacleNumbers(s->coupling->bodies)));
     if (q->load)
       PetscCall(PetscArraycpy(a + u->velocity + BodiesObstacleNumbers(s->coupling->bodies), q->load,
-                              FreeBodiesOwn(s->coupling->bodies->obstacles)));
+                              3 * s->coupling->bodies->obstacles->free->n));
     PetscCall(VecRestoreArray(s->reduced->U, &k));
   }
   UnknownsScale(u, PETSC_FALSE, a);

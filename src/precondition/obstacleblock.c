@@ -16,7 +16,7 @@ struct _p_ObstacleBlock {
   ObstacleModes modes;   /* NULL: dense inverse */
   PetscScalar *own;      /* [2w + 3 own free] work */
   PetscScalar *all;      /* [n] work */
-  float *from, *to;      /* [n] on root: work, what has been found */
+  float *from, *to;      /* [n] work, what has been found */
   PetscInt coupled;      /* number of the factor that X and the vesicles' block are of; 0: they know no obstacles */
   float *response;       /* [2M][2W] X, on root; not made unless coupled */
   PetscScalar *force;    /* [2M] of vesicles, work */
@@ -25,6 +25,7 @@ struct _p_ObstacleBlock {
 
 PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, ObstacleBlock *out) {
   const Obstacles o = coupling->bodies->obstacles;
+  const PetscInt m = 2 * coupling->membrane->layout->M;
   ObstacleBlock b;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
@@ -35,10 +36,10 @@ PetscErrorCode ObstacleBlockCreate(const FluidSpec *spec, Coupling coupling, Obs
   b->age = AgeNone();
   b->root = LayoutOwner(coupling->bodies->layout, 0);
   b->n = 2 * o->layout->M + 3 * o->free->M;
-  PetscCall(PetscMalloc2(b->n, &b->all, 2 * o->layout->n + FreeBodiesOwn(o), &b->own));
+  PetscCall(PetscMalloc6(b->n, &b->all, 2 * o->layout->n + 3 * o->free->n, &b->own, b->n, &b->from, b->n, &b->to, m,
+                         &b->force, m, &b->single));
   if (o->modes) PetscCall(ObstacleModesCreate(spec, coupling, b->root, &b->modes));
   if (o->layout->rank != b->root) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(b->n, &b->from, b->n, &b->to));
   if (!b->modes) PetscCall(PetscMalloc1(SymmetricSize(b->n), &b->inverse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,11 +49,9 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   if (!*block) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstacleModesDestroy(&(*block)->modes));
   PetscCall(PetscFree((*block)->inverse));
-  PetscCall(PetscFree2((*block)->from, (*block)->to));
   PetscCall(PetscFree((*block)->response));
-  PetscCall(PetscFree2((*block)->force, (*block)->single));
   PetscCall(VecDestroy(&(*block)->made_at.place));
-  PetscCall(PetscFree2((*block)->all, (*block)->own));
+  PetscCall(PetscFree6((*block)->all, (*block)->own, (*block)->from, (*block)->to, (*block)->force, (*block)->single));
   PetscCall(PetscFree(*block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -226,7 +225,6 @@ PetscErrorCode ObstacleBlockCouple(ObstacleBlock b, MeanMobility mobility, Petsc
   if (b->obstacles->moving) PetscFunctionReturn(PETSC_SUCCESS);
   if (!b->age.made) PetscCall(MakeObstacleFactor(b, failed)); /* a restart comes here first */
   if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!b->force) PetscCall(PetscMalloc2(m, &b->force, m, &b->single));
   b->coupled = b->age.made;
   PetscCall(PetscMalloc1(2 * b->obstacles->layout->M * m, &K));
   PetscCall(
@@ -257,7 +255,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, const PetscScalar r[], PetscS
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(b->own, r, 2 * l->n + FreeBodiesOwn(b->obstacles)));
+  PetscCall(PetscArraycpy(b->own, r, 2 * l->n + 3 * b->obstacles->free->n));
   ObstaclesTurn(b->obstacles, b->obstacles->at, b->made_at, b->own);
   PetscCall(LayoutToRank(l, b->root, 2, b->own, b->all));
   PetscCall(LayoutToRank(b->obstacles->free, b->root, 3, b->own + 2 * l->n, b->all + w));
@@ -279,7 +277,7 @@ PetscErrorCode ObstacleBlockBegin(ObstacleBlock b, const PetscScalar r[], PetscS
 /* In single precision the rows of free bodies would not hold to rounding; solid has their right-hand sides. */
 PetscErrorCode ObstacleBlockEnd(ObstacleBlock b, const PetscScalar F[], PetscScalar solid[]) {
   const InnerFluid inner = b->coupling->mobility->inner;
-  const PetscInt free = FreeBodiesOwn(b->obstacles), first = 3 * b->obstacles->free->first;
+  const PetscInt free = 3 * b->obstacles->free->n, first = 3 * b->obstacles->free->first;
   const Layout l = b->obstacles->layout, vesicles = b->coupling->membrane->layout;
   const PetscInt w = 2 * l->M, m = 2 * vesicles->M;
   const PetscBool root = l->rank == b->root ? PETSC_TRUE : PETSC_FALSE;

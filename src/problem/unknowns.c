@@ -19,7 +19,7 @@ PetscErrorCode UnknownsCreate(Coupling coupling, Unknowns *out) {
   u->length = Length(coupling);
   u->velocity = 2 * coupling->membrane->layout->n;
   u->solid = BodiesObstacleNumbers(coupling->bodies);
-  if (coupling->bodies->obstacles) u->solid += FreeBodiesOwn(coupling->bodies->obstacles);
+  if (coupling->bodies->obstacles) u->solid += 3 * coupling->bodies->obstacles->free->n;
   u->edges = coupling->law->n;
   PetscCall(PetscCalloc1(2 * coupling->bodies->layout->n, &u->V));
   PetscFunctionReturn(PETSC_SUCCESS);

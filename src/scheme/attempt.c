@@ -63,7 +63,7 @@ static PetscErrorCode CarryBodies(Scheme s, Coupled *d, const PetscReal weight[]
 static PetscErrorCode KnownForces(Scheme s, Coupled *d, const BDF *b) {
   const Obstacles o = s->coupling->bodies->obstacles;
   const InnerFluid inner = s->coupling->mobility->inner;
-  const PetscInt own = FreeBodiesOwn(o), first = 3 * o->free->first;
+  const PetscInt own = 3 * o->free->n, first = 3 * o->free->first;
   const PetscScalar *q;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < own; k++) d->load[k] = (inner && d->start ? 0 : o->load[first + k]) - d->load[k];
@@ -87,7 +87,7 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(VecWAXPY(d->Y, 1 / b->a0, s->background, d->Xhat));
   if (d->place) { /* next.place: without the new q */
     PetscCall(CarryBodies(s, d, d->adams.history, d->next.place));
-    PetscCall(PetscArrayzero(d->load, FreeBodiesOwn(obstacles)));
+    PetscCall(PetscArrayzero(d->load, 3 * obstacles->free->n));
   }
   PetscCall(CouplingMarkers(s->coupling, d->Y, d->next.place, d->all));
   PetscCall(CouplingStepForce(s->coupling, d->all, d->Xstar, NULL, d->force, d->load));

@@ -261,7 +261,7 @@ static PetscErrorCode SetUp_Coupled(Scheme s) {
   PetscCall(HistoryCreate(s, &d->history));
   for (int i = 0; i < 7; i++) PetscCall(VecDuplicate(s->state.X, markers[i]));
   if (s->state.place) {
-    const PetscInt own = FreeBodiesOwn(s->coupling->bodies->obstacles);
+    const PetscInt own = 3 * s->coupling->bodies->obstacles->free->n;
     PetscCall(VecDuplicate(s->state.place, &d->place));
     PetscCall(PetscMalloc1(own, &d->load));
   }
