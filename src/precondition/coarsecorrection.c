@@ -27,7 +27,7 @@ static void TabulateCorrection(CoarseCorrection s, const OffsetTable *L) {
 }
 
 PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *out) {
-  const PetscInt M = mobility->bodies->membrane->layout->M;
+  const PetscInt M = mobility->bodies->layout->M;
   CoarseCorrection s;
   OffsetTable L;
   PetscFunctionBeginUser;
@@ -53,7 +53,7 @@ PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range) {
 
 /* The pairs of marker i with those of the block's column. */
 static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, PetscInt i) {
-  const Layout l = s->mobility->bodies->membrane->layout;
+  const Layout l = s->mobility->bodies->layout;
   const NearBounds *column = &s->mobility->near->pairs->bounds[b->column];
   const PetscReal *X = s->mobility->markers->X, x[2] = {X[2 * i] - b->shift[0], X[2 * i + 1] - b->shift[1]};
   PetscFunctionBeginUser;
@@ -73,9 +73,9 @@ static PetscErrorCode AddCorrectionRow(CoarseCorrection s, const NearBlock *b, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a block joins two vesicles. */
-static PetscBool JoinsVesicles(CoarseCorrection s, const NearBlock *b) {
-  return !NearBlockIsSelf(b) && PetscMax(b->row, b->column) < s->mobility->bodies->vesicles;
+/* Whether a block joins a vesicle and another body. */
+static PetscBool JoinsVesicle(CoarseCorrection s, const NearBlock *b) {
+  return !NearBlockIsSelf(b) && PetscMin(b->row, b->column) < s->mobility->bodies->vesicles;
 }
 
 PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
@@ -84,7 +84,7 @@ PetscErrorCode CoarseCorrectionPlace(CoarseCorrection s) {
   PetscFunctionBeginUser;
   s->pairs = 0;
   for (const NearBlock *b = list->block; b < list->block + list->count.blocks; b++)
-    for (PetscInt i = start[b->row]; i < start[b->row + 1] && JoinsVesicles(s, b); i++)
+    for (PetscInt i = start[b->row]; i < start[b->row + 1] && JoinsVesicle(s, b); i++)
       PetscCall(AddCorrectionRow(s, b, i));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -115,12 +115,13 @@ static void AddJumpsAt(CoarseCorrection s, const PetscReal x[2], PetscInt first,
   u[1] += LanesSum(sum[1]);
 }
 
-/* U += D J of the vesicle `column` at own markers of `row`; sign times shift moves the column. */
+/* U += D J of the body `column` at own markers of `row`; sign times shift moves the column. */
 static void AddJumps(CoarseCorrection s, PetscInt row, PetscInt column, PetscReal sign, const PetscReal shift[2],
                      PetscScalar U[]) {
   const Layout l = s->mobility->bodies->layout;
   const PetscReal *X = s->mobility->markers->X;
-  if (s->mobility->contrast->ratio[column] == 1 || row < l->own || row >= l->end) return;
+  if (column >= s->mobility->bodies->vesicles || s->mobility->contrast->ratio[column] == 1) return;
+  if (row < l->own || row >= l->end) return;
   for (PetscInt i = l->start[row]; i < l->start[row + 1]; i++) {
     const PetscReal x[2] = {X[2 * i] - sign * shift[0], X[2 * i + 1] - sign * shift[1]};
     AddJumpsAt(s, x, l->start[column], l->start[column + 1], U + 2 * (i - l->first));
@@ -130,7 +131,7 @@ static void AddJumps(CoarseCorrection s, PetscInt row, PetscInt column, PetscRea
 PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], const PetscScalar J[],
                                      PetscScalar U[]) {
   const NearList *list = &s->mobility->near->list;
-  const Layout l = s->mobility->bodies->membrane->layout;
+  const Layout l = s->mobility->bodies->layout;
   const PetscInt first = l->first, end = l->first + l->n;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(l, 2, F, s->force));
@@ -142,7 +143,7 @@ PetscErrorCode CoarseCorrectionApply(CoarseCorrection s, const PetscScalar F[], 
   if (!J) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayoutGather(l, 2, J, s->jump));
   for (const NearBlock *b = list->block; b < list->block + list->count.blocks; b++) {
-    if (!JoinsVesicles(s, b)) continue;
+    if (!JoinsVesicle(s, b)) continue;
     AddJumps(s, b->row, b->column, 1, b->shift, U);
     AddJumps(s, b->column, b->row, -1, b->shift, U);
   }

@@ -1,4 +1,4 @@
-/* What the coarse grid lacks between markers of two vesicles next to one another (docs/suspensions.md, Near markers),
+/* What the coarse grid lacks between markers of a vesicle and a body next to it (docs/suspensions.md, Near markers),
    the velocity -R F + D J of forces F and, with viscosity contrast, of jumps J.
 
        R = S - L,
@@ -24,24 +24,24 @@ typedef struct {
 
 typedef struct _p_CoarseCorrection *CoarseCorrection;
 struct _p_CoarseCorrection {
-  Mobility mobility;                   /* borrowed: markers, normals, and the pairs of vesicles near one another */
+  Mobility mobility;                   /* borrowed: markers, normals, and the pairs of bodies near one another */
   PetscReal reach;                     /* length */
   PetscReal across[CORRECTION_POINTS]; /* R = across I + (along - across) r r^T/r^2 by distance, from 0 to the reach */
   PetscReal along[CORRECTION_POINTS];
   CorrectionPair *pair;
   PetscInt pairs;
   size_t room;
-  PetscScalar *force, *jump; /* [2M] work */
+  PetscScalar *force, *jump; /* [2(M + W)] work */
 };
 
-/* CoarseCorrectionCreate - for the membranes of a mobility that has a near field, and this coarse grid. Not collective.
- */
+/* CoarseCorrectionCreate - for the bodies of a mobility that has a near field, and this coarse grid. Not collective. */
 PETSC_EXTERN PetscErrorCode CoarseCorrectionCreate(Mobility mobility, CoarseGrid coarse, CoarseCorrection *range);
 PETSC_EXTERN PetscErrorCode CoarseCorrectionDestroy(CoarseCorrection *range);
 
 /* CoarseCorrectionPlace - the pairs where the markers have been placed. Not collective. */
 PETSC_EXTERN PetscErrorCode CoarseCorrectionPlace(CoarseCorrection range);
 
-/* CoarseCorrectionApply - U += -R F + D J, own parts of marker vectors; J NULL: without contrast. Collective. */
+/* CoarseCorrectionApply - U += -R F + D J, own parts of marker vectors of all bodies; J NULL: without contrast.
+   Collective. */
 PETSC_EXTERN PetscErrorCode CoarseCorrectionApply(CoarseCorrection range, const PetscScalar F[], const PetscScalar J[],
                                                   PetscScalar U[]);

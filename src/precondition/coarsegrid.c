@@ -1,7 +1,7 @@
 #include "precondition/coarsegrid.h"
 #include "markers/streamresponse.h"
 
-#define SPACING 1.2 /* coarse cells between the points of a vesicle, at most */
+#define SPACING 1.2 /* coarse cells between the points of a body, at most */
 
 /* Cells of the run's grid across one of the coarse one, the first of these that fits; 0: none. */
 static PetscInt CoarseTimes(const FluidSpec *spec) {
@@ -15,21 +15,23 @@ static PetscInt CoarseTimes(const FluidSpec *spec) {
   return 0;
 }
 
-static PetscErrorCode CreatePointLayout(CoarseGrid c, Layout fine, const PetscReal length[], PetscReal h) {
+static PetscErrorCode CreatePointLayout(CoarseGrid c, Bodies bodies) {
+  const Layout fine = bodies->layout;
   PetscInt *start;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fine->bodies + 1, &start));
   start[0] = 0;
-  for (PetscInt v = 0; v < fine->bodies; v++) /* an odd number, which has no Nyquist mode */
-    start[v + 1] = start[v] + 2 * (PetscInt)PetscMax(3, 0.5 * length[v] / (SPACING * h)) + 1;
+  for (PetscInt v = 0; v < fine->bodies; v++) { /* an odd number, which has no Nyquist mode */
+    const PetscReal length = bodies->ds[v] * (PetscReal)LayoutCount(fine, v);
+    start[v + 1] = start[v] + 2 * (PetscInt)PetscMax(3, 0.5 * length / (SPACING * c->fluid->grid->h)) + 1;
+  }
   PetscCall(LayoutCreate(fine->comm, fine->bodies, start, fine->body, &c->layout));
   if (c->fluid->grid->size < fine->size) PetscCall(LayoutCreate(PETSC_COMM_SELF, fine->bodies, start, NULL, &c->all));
   PetscCall(PetscFree(start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscReal length[], const char kernel[],
-                                CoarseGrid *out) {
+PetscErrorCode CoarseGridCreate(const FluidSpec *run, Bodies bodies, const char kernel[], CoarseGrid *out) {
   FluidSpec spec = BoxGridSpec(run);
   PetscReal longest = 0;
   CoarseGrid c;
@@ -40,13 +42,13 @@ PetscErrorCode CoarseGridCreate(const FluidSpec *run, Layout fine, const PetscRe
   PetscCall(PetscNew(&c));
   *out = c;
   for (int d = 0; d < 2; d++) spec.cells[d] /= times;
-  if (!GridFits(spec.cells[1], fine->size)) spec.comm = PETSC_COMM_SELF;
+  if (!GridFits(spec.cells[1], bodies->layout->size)) spec.comm = PETSC_COMM_SELF;
   PetscCall(FluidCreate(&spec, &c->fluid));
   PetscCall(StokesCreate(c->fluid, &c->stokes));
-  PetscCall(CreatePointLayout(c, fine, length, c->fluid->grid->h));
+  PetscCall(CreatePointLayout(c, bodies));
   const Layout points = c->all ? c->all : c->layout;
   PetscCall(MarkersCreate(c->fluid->grid, points, kernel, PETSC_TRUE, 0, NULL, &c->markers));
-  for (PetscInt v = 0; v < fine->bodies; v++) longest = PetscMax(longest, length[v]);
+  for (PetscInt v = 0; v < bodies->vesicles; v++) longest = PetscMax(longest, bodies->membrane->L0[v]);
   PetscCall(MobilityTableCreate(&spec, c->markers->kernel, longest / 2, &c->table));
   PetscCall(MobilityTableSetUp(c->table, c->fluid->alpha));
   PetscCall(LayoutCreateVec(points, 2, &c->work));

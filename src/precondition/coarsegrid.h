@@ -8,6 +8,7 @@
    Ranks share the rows of the grid as they do in the run. Where there are too few rows each rank has the whole grid and
    all points, and forces are gathered. */
 #pragma once
+#include "bodies/bodies.h"
 #include "precondition/mobilitytable.h"
 #include "fluid/stokes/stokes.h"
 
@@ -22,14 +23,13 @@ struct _p_CoarseGrid {
   Vec work;            /* marker vector, of `all` if there is one */
 };
 
-/* CoarseGridCreate - for the quasi-steady fluid that spec makes and vesicles with these initial lengths, whose layout
-   is `fine`. NULL in unbounded fluid, and where the numbers of cells have no common divisor
-   of 2 to 5 or the coarse cells would be fewer than 16. Collective. */
-PETSC_EXTERN PetscErrorCode CoarseGridCreate(const FluidSpec *spec, Layout fine, const PetscReal length[],
-                                             const char kernel[], CoarseGrid *coarse);
+/* CoarseGridCreate - for the quasi-steady fluid that spec makes and these bodies. NULL in unbounded fluid, and where
+   the numbers of cells have no common divisor of 2 to 5 or the coarse cells would be fewer than 16. Collective. */
+PETSC_EXTERN PetscErrorCode CoarseGridCreate(const FluidSpec *spec, Bodies bodies, const char kernel[],
+                                             CoarseGrid *coarse);
 PETSC_EXTERN PetscErrorCode CoarseGridDestroy(CoarseGrid *coarse);
 
-/* CoarseGridPlace - at the points X of the own vesicles; those nearer to a wall than
+/* CoarseGridPlace - at the points X of the own bodies; those nearer to a wall than
    markers may be are moved off it. Collective. */
 PETSC_EXTERN PetscErrorCode CoarseGridPlace(CoarseGrid coarse, PetscScalar X[]);
 

@@ -29,3 +29,11 @@ PetscErrorCode CurvePointsDestroy(CurvePoints *w) {
   PetscCall(PetscFree2(w->to_markers, w->to_points));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+void CurvePointsPlace(const CurvePoints *w, const PetscReal span[2], const PetscReal X[], PetscReal Y[]) {
+  for (PetscInt i = 0; i < 2 * w->points; i++) {
+    Y[i] = span[i % 2] * (PetscReal)(i / 2) / (PetscReal)w->points;
+    for (PetscInt k = 0; k < w->n; k++)
+      Y[i] += w->to_points[i / 2 * w->n + k] * (X[2 * k + i % 2] - span[i % 2] * (PetscReal)k / (PetscReal)w->n);
+  }
+}

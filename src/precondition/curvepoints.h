@@ -19,3 +19,8 @@ typedef struct {
 /* CurvePointsCreate - for n markers and so many points, an odd number of at most n. Not collective. */
 PETSC_EXTERN PetscErrorCode CurvePointsCreate(PetscBool open, PetscInt n, PetscInt points, CurvePoints *curve);
 PETSC_EXTERN PetscErrorCode CurvePointsDestroy(CurvePoints *curve);
+
+/* CurvePointsPlace - Y[2 points], the places of the points of a curve with markers X[2n], after which it repeats
+   shifted by span[2]. Not collective. */
+PETSC_EXTERN void CurvePointsPlace(const CurvePoints *curve, const PetscReal span[2], const PetscReal X[],
+                                   PetscReal Y[]);

@@ -3,14 +3,22 @@
 
 #define ITERATIONS 2 /* of GMRES */
 
-/* W = -K F + D J, the sources of the answers B^-1 (U, sigma): what the own vesicles and the walls do to the others; own
-   parts of marker vectors, sigma NULL: 0. */
+/* The velocities w of the coarse points of a curve, to its markers. */
+static void SpreadPoints(const CurvePoints *p, const PetscReal w[], PetscReal marker[]) {
+  (void)PetscArrayzero(marker, 2 * p->n);
+  for (PetscInt i = 0; i < 2 * p->points; i++)
+    for (PetscInt k = 0; k < p->n; k++) marker[2 * k + i % 2] += p->to_markers[i / 2 * p->n + k] * w[i];
+}
+
+/* W = -K F + D J, the sources of the answers B^-1 (U, sigma): what the own vesicles and the walls do to the other
+   bodies; own parts of marker vectors, sigma NULL: 0. */
 static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], const PetscScalar sigma[],
                                      PetscScalar W[]) {
   const SharedShapes s = c->shapes;
-  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout, all = s->coupling->bodies->layout;
   PetscReal *marker = c->work;
   PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(c->W, 2 * coarse->n)); /* obstacles are given no forces */
   for (PetscInt k = 0; k < s->count; k++) PetscCall(SharedShapeSources(s, &s->shape[k], U, sigma, &c->answer));
   for (PetscInt v = l->own; v < l->end; v++) { /* forces to the coarse points, P^T F, in the frame of the shape */
     const CurvePoints *p = &s->shape[s->of[v]].curve;
@@ -27,11 +35,11 @@ static PetscErrorCode OthersVelocity(Interactions c, const PetscScalar U[], cons
     PetscReal *w = c->work + 2 * p->n;
     RigidFitTurn(&s->fit[v - l->own], PETSC_TRUE, p->points, c->W + at, w);
     PetscCall(DenseMultAdd(PETSC_FALSE, points, points, 1, q->self, c->F + at, w));
-    PetscCall(PetscArrayzero(marker, 2 * p->n));
-    for (PetscInt i = 0; i < points; i++)
-      for (PetscInt k = 0; k < p->n; k++) marker[2 * k + i % 2] += p->to_markers[i / 2 * p->n + k] * w[i];
+    SpreadPoints(p, w, marker);
     RigidFitBack(&s->fit[v - l->own], 2, p->n, marker, W + 2 * LayoutOffset(l, v));
   }
+  for (PetscInt b = PetscMax(all->own, l->bodies); b < all->end; b++)
+    SpreadPoints(&c->solid[b - l->bodies], c->W + 2 * LayoutOffset(coarse, b), W + 2 * LayoutOffset(all, b));
   PetscCall(CoarseCorrectionApply(c->near, c->answer.force, c->answer.jump, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -69,18 +77,23 @@ static PetscErrorCode CreateInteractionKSP(Interactions c, Layout l) {
 }
 
 PetscErrorCode InteractionsCreate(SharedShapes s, Interactions *out) {
-  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout, all = s->coupling->bodies->layout;
   PetscInt most = 0;
   Interactions c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
   *out = c;
   c->shapes = s;
+  PetscCall(PetscMalloc1(all->bodies - l->bodies, &c->solid));
+  for (PetscInt b = l->bodies; b < all->bodies; b++)
+    PetscCall(CurvePointsCreate(s->coupling->bodies->kind[b].type == CURVE_OPEN, LayoutCount(all, b),
+                                LayoutCount(coarse, b), &c->solid[b - l->bodies]));
   for (PetscInt v = l->own; v < l->end; v++) most = PetscMax(most, 2 * LayoutCount(l, v) + 2 * LayoutCount(coarse, v));
-  PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * l->n, &c->answer.force, most, &c->work));
-  if (s->coupling->mobility->contrast) PetscCall(PetscMalloc1(2 * l->n, &c->answer.jump));
+  PetscCall(PetscMalloc4(2 * coarse->n, &c->F, 2 * coarse->n, &c->W, 2 * all->n, &c->answer.force, most, &c->work));
+  PetscCall(PetscArrayzero(c->answer.force, 2 * all->n));
+  if (s->coupling->mobility->contrast) PetscCall(PetscCalloc1(2 * all->n, &c->answer.jump));
   PetscCall(CoarseCorrectionCreate(s->coupling->mobility, s->coarse, &c->near));
-  PetscCall(CreateInteractionKSP(c, l));
+  PetscCall(CreateInteractionKSP(c, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,6 +106,9 @@ PetscErrorCode InteractionsDestroy(Interactions *cross) {
   PetscCall(VecDestroy(&c->known));
   PetscCall(VecDestroy(&c->velocity));
   PetscCall(CoarseCorrectionDestroy(&c->near));
+  for (PetscInt b = 0; b < c->shapes->coupling->bodies->layout->bodies - c->shapes->coupling->bodies->vesicles; b++)
+    PetscCall(CurvePointsDestroy(&c->solid[b]));
+  PetscCall(PetscFree(c->solid));
   PetscCall(PetscFree4(c->F, c->W, c->answer.force, c->work));
   PetscCall(PetscFree(c->answer.jump));
   PetscCall(PetscFree(*cross));
@@ -102,7 +118,7 @@ PetscErrorCode InteractionsDestroy(Interactions *cross) {
 /* Each vesicle's coarse points lie where its shape's lie in its frame. */
 PetscErrorCode InteractionsPlace(Interactions c) {
   const SharedShapes s = c->shapes;
-  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout;
+  const Layout l = s->coupling->membrane->layout, coarse = s->coarse->layout, all = s->coupling->bodies->layout;
   PetscFunctionBeginUser;
   for (PetscInt v = l->own; v < l->end; v++) {
     const PetscInt n = LayoutCount(l, v), points = LayoutCount(coarse, v);
@@ -112,13 +128,18 @@ PetscErrorCode InteractionsPlace(Interactions c) {
     RigidFitTurn(&s->fit[v - l->own], PETSC_FALSE, points, s->shape[s->of[v]].points, to);
     for (PetscInt i = 0; i < 2 * points; i++) to[i] += mean[i % 2];
   }
+  for (PetscInt b = PetscMax(all->own, l->bodies); b < all->end; b++) {
+    const CurvePoints *p = &c->solid[b - l->bodies];
+    CurvePointsPlace(p, s->coupling->bodies->kind[b].span, s->coupling->markers->X + 2 * all->start[b],
+                     c->W + 2 * LayoutOffset(coarse, b));
+  }
   PetscCall(CoarseGridPlace(s->coarse, c->W));
   PetscCall(CoarseCorrectionPlace(c->near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode InteractionsAdd(Interactions c, const PetscScalar sigma[], PetscScalar U[]) {
-  const PetscInt n = 2 * c->shapes->coupling->membrane->layout->n;
+  const PetscInt n = 2 * c->shapes->coupling->bodies->layout->n;
   PetscScalar *a;
   PetscFunctionBeginUser;
   PetscCall(VecGetArray(c->known, &a));

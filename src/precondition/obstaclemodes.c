@@ -186,13 +186,8 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
 /* Where the points of all curves are, Y[modes]. */
 static void PlacePoints(ObstacleModes s, PetscReal Y[]) {
   const Obstacles o = s->coupling->bodies->obstacles;
-  (void)PetscArrayzero(Y, ObstacleModesCount(s));
-  for (PetscInt v = 0; v < o->layout->bodies; v++) {
-    const CurvePoints *q = &s->shape[s->of[v]].curve;
-    for (PetscInt i = 0; i < q->points; i++)
-      for (PetscInt k = 0; k < 2 * q->n; k++)
-        Y[s->start[v] + 2 * i + k % 2] += q->to_points[i * q->n + k / 2] * o->X[2 * o->layout->start[v] + k];
-  }
+  for (PetscInt v = 0; v < o->layout->bodies; v++)
+    CurvePointsPlace(&s->shape[s->of[v]].curve, o->kind[v].span, o->X + 2 * o->layout->start[v], Y + s->start[v]);
 }
 
 /* M[modes][modes] on root, the grid's mobility between points of different curves: every rank makes a part. */

@@ -149,8 +149,8 @@ PetscErrorCode PreconditionerApply(Preconditioner p, Vec r, Vec z) {
   PetscCall(VecGetArray(z, &V));
   sigma = V + UnknownsEdges(u);
   UnknownsScale(u, PETSC_TRUE, V);
-  if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
   if (p->shapes) PetscCall(SharedShapesSolve(p->shapes, V, sigma));
+  if (p->solid) PetscCall(ObstacleBlockBegin(p->solid, V + u->velocity, V));
   if (p->blocks) PetscCall(DenseBlocksSolve(p->blocks, V, sigma));
   if (p->solid && ObstacleBlockCoupled(p->solid)) PetscCall(UnknownsForce(u, V, p->force));
   if (p->solid) PetscCall(ObstacleBlockEnd(p->solid, p->force, V + u->velocity));

@@ -19,7 +19,7 @@ PetscErrorCode SharedShapesCreate(const FluidSpec *spec, Coupling c, SharedShape
   PetscCall(PetscMalloc4(l->bodies, &s->of, l->end - l->own, &s->order, l->end - l->own, &s->fit, 2 * most, &s->X));
   PetscCall(PetscMalloc2(3 * l->n, &s->from, 4 * l->n, &s->to));
   for (PetscInt v = 0; v < l->bodies; v++) s->of[v] = -1;
-  PetscCall(CoarseGridCreate(spec, l, m->L0, c->markers->kernel->name, &s->coarse));
+  PetscCall(CoarseGridCreate(spec, c->bodies, c->markers->kernel->name, &s->coarse));
   if (s->coarse) PetscCall(InteractionsCreate(s, &s->cross));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,8 +22,9 @@ PETSC_EXTERN PetscErrorCode SharedShapesDestroy(SharedShapes *shapes);
    more than 10 %. failed, on every rank, when a matrix is singular. Collective. */
 PETSC_EXTERN PetscErrorCode SharedShapesFollow(SharedShapes shapes, PetscBool *failed);
 
-/* SharedShapesSolve - from the own U[2n] and sigma[n] = r_s: V and sigma of each vesicle's dense problem, corrected by
-   what the others and the walls do to it. Collective. */
+/* SharedShapesSolve - from the own U[2(n + w)] and sigma[n] = r_s: V and sigma of each vesicle's dense problem,
+   corrected by what the others and the walls do to it; U of the obstacles += what the vesicles do to them. Collective.
+ */
 PETSC_EXTERN PetscErrorCode SharedShapesSolve(SharedShapes shapes, PetscScalar U[], PetscScalar sigma[]);
 
 /* SharedShapesGetMemory, SharedShapesSetMemory - the shapes as SharedShapesMemorySize numbers for a checkpoint, the
