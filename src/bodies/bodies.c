@@ -19,8 +19,7 @@ PetscErrorCode BodiesCreate(Membrane m, Obstacles obstacles, Bodies *out) {
     PetscCall(PetscArraycpy(b->spectral + vesicles, obstacles->spectral, obstacles->layout->bodies));
     PetscCall(PetscArraycpy(b->kind + vesicles, obstacles->kind, obstacles->layout->bodies));
     for (PetscInt v = vesicles; v < b->layout->bodies; v++) b->kind[v].around = obstacles->vesicle[v - vesicles] + 1;
-    for (PetscInt v = vesicles; v < b->layout->bodies; v++)
-      b->resting[v] = obstacles->motion[v - vesicles].carried ? PETSC_FALSE : PETSC_TRUE;
+    for (PetscInt v = vesicles; v < b->layout->bodies; v++) b->resting[v] = !obstacles->motion[v - vesicles].carried;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

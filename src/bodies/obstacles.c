@@ -25,14 +25,13 @@ static PetscErrorCode Normals(Obstacles o, PetscInt b, PetscReal *length) {
 
 /* One curve's middle and mean edge, and its motion. */
 static PetscErrorCode Describe(Obstacles o, const SceneObstacles *own, PetscInt b) {
-  const PetscInt first = o->layout->start[b], n = LayoutCount(o->layout, b);
   const PetscBool free = own->free.is[b];
   BodyMotion *m = &o->motion[b];
   PetscReal length;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < 2 * n; k++) m->center[k % 2] += o->rest[2 * first + k] / n;
+  ShapeMiddle(&own->outline, b, m->center);
   PetscCall(Normals(o, b, &length));
-  o->ds[b] = length / n;
+  o->ds[b] = length / LayoutCount(o->layout, b);
   m->frequency = own->frequency;
   for (int c = 0; c < 2; c++) m->velocity[c] = own->velocity[2 * b + c];
   m->rotation = own->turn[b];
@@ -148,20 +147,9 @@ PetscErrorCode ObstaclesDestroy(Obstacles *obstacles) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ObstaclesOrder(Obstacles o, const PetscReal own[], PetscReal seen[]) {
-  for (PetscInt v = 0; v < o->layout->bodies; v++)
-    for (PetscInt first = o->layout->start[v], last = o->layout->start[v + 1] - 1, k = first, j = last; k <= j;
-         k++, j--)
-      for (int c = 0; c < 2; c++) {
-        const PetscReal low = own[2 * k + c], high = own[2 * j + c];
-        seen[2 * k + c] = o->container[v] ? high : low;
-        seen[2 * j + c] = o->container[v] ? low : high;
-      }
-}
-
 void ObstaclesCurves(Obstacles o, Instant at, PetscReal X[]) {
   for (PetscInt b = 0; b < o->layout->bodies; b++) ObstacleCarry(o, b, at, X);
-  ObstaclesOrder(o, X, X);
+  CurvesReverse(o->layout->bodies, o->layout->start, o->container, X);
 }
 
 /* The first moving curve that is too near a wall. */

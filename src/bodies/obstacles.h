@@ -66,10 +66,8 @@ PETSC_EXTERN PetscErrorCode ObstaclesCheckStride(Obstacles obstacles, Instant fr
 PETSC_EXTERN PetscReal ObstacleStride(Obstacles obstacles, PetscInt curve, Instant from, Instant to);
 
 /* ObstaclesCurves - markers of all obstacles at an instant as others see them, X[2W]: clockwise the curves that have
-   the fluid inside. ObstaclesOrder - other numbers of all markers in that order, seen[2W], which may be own. Not
-   collective. */
+   the fluid inside. Not collective. */
 PETSC_EXTERN void ObstaclesCurves(Obstacles obstacles, Instant at, PetscReal X[]);
-PETSC_EXTERN void ObstaclesOrder(Obstacles obstacles, const PetscReal own[], PetscReal seen[]);
 
 /* ObstaclesRows - y += beta N N^T F, what obstacles give their rows themselves, of own F[2w], y[2w]. ObstaclesTurn -
    own vectors at the markers as the bodies stood at one instant, F[2w], become those at another, with what stands

@@ -33,6 +33,10 @@ PETSC_EXTERN PetscReal ShapeRadius(const Shape *shape, PetscInt v);
 PETSC_EXTERN void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]);
 PETSC_EXTERN PetscBool ShapeHolds(const Shape *shape, PetscInt v, const PetscReal X[2], const PetscReal period[2]);
 
+/* CurvesReverse - of curves with the markers start[v] .. start[v + 1] - 1, numbers X[2 start[curves]] of the markers of
+   those that are marked, in the opposite order. Not collective. */
+PETSC_EXTERN void CurvesReverse(PetscInt curves, const PetscInt start[], const PetscBool marked[], PetscReal X[]);
+
 /* A curve X(t):
 
      X(t + 1) = X(t) + span

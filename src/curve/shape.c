@@ -32,6 +32,16 @@ PetscReal ShapeRadius(const Shape *shape, PetscInt v) {
   return length / (2 * PETSC_PI);
 }
 
+void CurvesReverse(PetscInt curves, const PetscInt start[], const PetscBool marked[], PetscReal X[]) {
+  for (PetscInt v = 0; v < curves; v++)
+    for (PetscInt k = start[v], j = start[v + 1] - 1; k < j && marked[v]; k++, j--)
+      for (int c = 0; c < 2; c++) {
+        const PetscReal low = X[2 * k + c];
+        X[2 * k + c] = X[2 * j + c];
+        X[2 * j + c] = low;
+      }
+}
+
 void ShapeMiddle(const Shape *shape, PetscInt v, PetscReal X[2]) {
   const PetscInt first = shape->start[v], n = shape->start[v + 1] - first;
   X[0] = X[1] = 0;

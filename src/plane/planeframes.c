@@ -169,7 +169,7 @@ PetscErrorCode PlaneFrame(void *plane, AppendedFile *file) {
     const StatePart part = StatePartOf(s, &s->state, (StatePartName)name);
     if (!part.n) continue;
     PetscCall(StateShow(s, (StatePartName)name, p->shown));
-    if (name == STATE_SOLIDS) ObstaclesOrder(o, p->shown, p->shown);
+    if (name == STATE_SOLIDS) CurvesReverse(o->layout->bodies, o->layout->start, o->container, p->shown);
     AppendedSet(file, k++, p->shown);
   }
   if (s->membrane->stretches) {

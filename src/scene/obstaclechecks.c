@@ -152,11 +152,8 @@ static PetscErrorCode ObstaclesCheckGaps(Scene scene, const PetscReal period[2])
   PetscInt n;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * s->start[s->vesicles], &X));
-  for (PetscInt b = 0; b < s->vesicles; b++) /* clockwise where the fluid is inside */
-    for (PetscInt k = s->start[b]; k < s->start[b + 1]; k++) {
-      const PetscInt from = own->container[b] ? s->start[b] + s->start[b + 1] - 1 - k : k;
-      PetscCall(PetscArraycpy(X + 2 * k, s->X + 2 * from, 2));
-    }
+  PetscCall(PetscArraycpy(X, s->X, 2 * s->start[s->vesicles]));
+  CurvesReverse(s->vesicles, s->start, own->container, X); /* clockwise where the fluid is inside */
   const CurveSet set = {s->vesicles, s->vesicles, s->start, s->kind, X, period, PETSC_TRUE, NULL};
   PetscCall(CurveGaps(&set, SCENE_LEAST_GAP * spacing, &n, &gap));
   if (n)
