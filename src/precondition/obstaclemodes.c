@@ -120,19 +120,6 @@ static void FindShapes(ObstacleModes s) {
   }
 }
 
-/* D of a curve, on root. */
-static PetscErrorCode AssembleCurve(ObstacleModes s, MeanMobility mobility, PetscReal alpha, PetscInt v,
-                                    PetscReal D[]) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  const Layout l = o->layout;
-  const MarkerRange own = {o->all->M - l->M + l->start[v], LayoutCount(l, v)};
-  const InnerFluid inner = s->coupling->mobility->inner;
-  PetscFunctionBeginUser;
-  PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
-  PetscCall(FreeBodiesBlock(o, v, v + 1, s->coupling->fluid->grid->h, alpha, inner ? inner->mass : NULL, D));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* D^-1, D^-1 Q and G of a shape from D, on root. */
 static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool *done) {
   const PetscInt n = q->numbers, m = 2 * q->curve.points, markers = q->curve.n;
@@ -158,6 +145,7 @@ static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool 
 
 static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *done) {
   const Obstacles o = s->coupling->bodies->obstacles;
+  const InnerFluid inner = s->coupling->mobility->inner;
   MeanMobility mobility;
   PetscReal *D;
   PetscFunctionBeginUser;
@@ -169,12 +157,15 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
   for (PetscInt k = 0; k < s->shapes; k++) {
     CurveShape *q = &s->shape[k];
     const PetscInt n = LayoutCount(o->layout, q->like);
+    const MarkerRange own = {o->all->M - o->layout->M + o->layout->start[q->like], n};
     PetscBool good = PETSC_TRUE;
     PetscCall(CurvePointsCreate(o->kind[q->like].type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE, n,
                                 (s->start[q->like + 1] - s->start[q->like]) / 2, &q->curve));
     q->numbers = 2 * n + (o->motion[q->like].free ? 3 : 0);
     PetscCall(PetscMalloc1(q->numbers * q->numbers, &D));
-    PetscCall(AssembleCurve(s, mobility, alpha, q->like, D));
+    PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
+    PetscCall(
+        FreeBodiesBlock(o, q->like, q->like + 1, s->coupling->fluid->grid->h, alpha, inner ? inner->mass : NULL, D));
     if (o->layout->rank == s->root) PetscCall(InvertCurve(q, D, &good));
     if (!good) *done = PETSC_FALSE;
     PetscCall(PetscFree(D));
@@ -183,16 +174,10 @@ static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the points of all curves are, Y[modes]. */
-static void PlacePoints(ObstacleModes s, PetscReal Y[]) {
-  const Obstacles o = s->coupling->bodies->obstacles;
-  for (PetscInt v = 0; v < o->layout->bodies; v++)
-    CurvePointsPlace(&s->shape[s->of[v]].curve, o->kind[v].span, o->X + 2 * o->layout->start[v], Y + s->start[v]);
-}
-
 /* M[modes][modes] on root, the grid's mobility between points of different curves: every rank makes a part. */
 static PetscErrorCode AssembleModes(ObstacleModes s, PetscReal alpha, PetscReal M[]) {
-  const Layout l = s->coupling->bodies->obstacles->layout;
+  const Obstacles o = s->coupling->bodies->obstacles;
+  const Layout l = o->layout;
   const Grid g = s->coupling->fluid->grid;
   const PetscInt n = ObstacleModesCount(s);
   const PetscReal over = 1 / PetscSqr(g->h), period[2] = {g->hi[0] - g->lo[0], g->hi[1] - g->lo[1]};
@@ -203,7 +188,8 @@ static PetscErrorCode AssembleModes(ObstacleModes s, PetscReal alpha, PetscReal 
   PetscCall(MobilityTableCreate(s->spec, s->coupling->markers->kernel, PETSC_MAX_REAL, &table));
   PetscCall(MobilityTableSetUp(table, alpha));
   PetscCall(PetscMalloc1(n, &Y));
-  PlacePoints(s, Y);
+  for (PetscInt v = 0; v < l->bodies; v++)
+    CurvePointsPlace(&s->shape[s->of[v]].curve, o->kind[v].span, o->X + 2 * l->start[v], Y + s->start[v]);
   PetscCall(PetscArrayzero(M, n * n));
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt i = s->start[v] + 2 * l->rank; i < s->start[v + 1]; i += 2 * l->size)
