@@ -148,6 +148,8 @@ CASES = {
     "order_1": "-scheme_order 1",
     "chords": "-membrane_derivative bending",
     "unsteady": "-fluid_inertia unsteady",
+    "quasi_steady": "-fluid_inertia none",
+    "quasi_steady_channel": "-fluid_inertia none -domain_bc_x periodic",
     "channel": "-domain_box 0,2.5,-1,1 -domain_bc_x periodic -domain_cells 40,32 -vesicle_center 1.2,0.1",
     "seam": "-domain_bc_x periodic -domain_bc_y periodic -domain_cells 33,33 -vesicle_center 0.97,-0.95",
     "close_markers": "-vesicle_spacing 0.7 -vesicle_allow_close_markers",

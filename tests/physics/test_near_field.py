@@ -57,15 +57,6 @@ def test_two_vesicles_passing(cached_run):
     assert abs(run.series["center_y_1"][-1] - 4.28874) < 4e-4
 
 
-@pytest.mark.parametrize("bc", ["-domain_bc_x wall", "-domain_bc_x periodic"])
-def test_ranks_agree(cached_run, bc):
-    scene = f"{COMMON} -domain_box -2,2,-2,2 -domain_cells 32,32 -vesicle_area 0.5 -time_end 0.1 {bc}"
-    one = cached_run(f"{scene} -coupled_ksp_rtol 1e-12")
-    two = cached_run(f"{scene} -coupled_ksp_rtol 1e-12", 2)
-    for column in ("inclination", "energy_bending"):
-        assert two.series[column][-1] == pytest.approx(one.series[column][-1], rel=1e-9)
-
-
 def test_a_bump_beside_a_corner(tmp_path):
     """A bump with its foot half a cell from a corner of four walls: 3 ranks agree."""
     t = np.linspace(-0.5, 0.5, 81)

@@ -15,7 +15,11 @@ APART = "-vesicle_center 0.8,2,2.7,2.4 "
 SEAM = "-vesicle_center 0.1,2,2.3,2.4 -contact_repulsion 20 -contact_repulsion_range 0.6 "
 
 
-@pytest.mark.parametrize("options, ranks", [(APART, 2), (SEAM, 1), (SEAM, 3)])
+#: Of two ratios of the viscosities.
+UNLIKE = "-vesicle_viscosity_ratio 5,.3 "
+
+
+@pytest.mark.parametrize("options, ranks", [(APART, 2), (APART + UNLIKE, 1), (SEAM, 1), (SEAM, 3)])
 def test_walls_agree_with_stresslets(options, ranks, tmp_path):
     """To rounding; and with what Python makes of the saved markers and tensions, to the error of the step."""
     run = run_petves(tmp_path / "run", CHANNEL + options, ranks)
@@ -32,9 +36,6 @@ def test_walls_agree_with_stresslets(options, ranks, tmp_path):
 #: Vesicles .4, .5 and 1.3 cells from a wall, and one in the middle.
 BOTTOM, TOP = "-vesicle_center 0.8,0.55,2.7,2.4 ", "-vesicle_center 0.8,2,2.7,3.45 "
 BOTH = "-vesicle_center 0.8,0.5,2.7,3.5 -vesicle_angle 6 -contact_repulsion 5 "
-
-#: Of two ratios of the viscosities.
-UNLIKE = "-vesicle_viscosity_ratio 5,.3"
 
 
 @pytest.mark.parametrize("options, ranks", [(BOTTOM, 1), (TOP + UNLIKE, 3), (BOTH, 2), (TOP, 1)])
