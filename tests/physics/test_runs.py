@@ -10,12 +10,12 @@ pytestmark = pytest.mark.xdist_group("runs")  # its tests share runs
 TIGHT = f"{PAPER} -tension_ksp_rtol 1e-12 -bending_ksp_rtol 1e-12"
 SHEAR = f"{PAPER} -domain_cells 64,64 -flow_type shear -time_step 0.0078125"
 
-#: Scenes of 20 steps: walls, a channel whose vesicle lies across the seam, shear.
+#: Scenes of 10 steps: walls, a channel whose vesicle lies across the seam, shear.
 SCENES = {
-    "walls": "-domain_cells 64,64 -vesicle_angle 20 -time_step 0.0078125 -time_end 0.15625",
-    "channel": "-domain_cells 60,48 -domain_box 0,2.5,-1,1 -domain_bc_x periodic -flow_type poiseuille "
-    "-flow_half_width 1 -vesicle_semi_axes 0.3,0.45 -vesicle_center 2.4,0.1 -time_step 0.01 -time_end 0.2",
-    "shear": SHEAR + " -time_end 0.15625",
+    "walls": "-domain_cells 48,48 -vesicle_angle 20 -time_step 0.0078125 -time_end 0.078125",
+    "channel": "-domain_cells 40,32 -domain_box 0,2.5,-1,1 -domain_bc_x periodic -flow_type poiseuille "
+    "-flow_half_width 1 -vesicle_semi_axes 0.3,0.45 -vesicle_center 2.4,0.1 -time_step 0.01 -time_end 0.1",
+    "shear": SHEAR + " -domain_cells 48,48 -time_end 0.078125",
 }
 
 
@@ -24,7 +24,7 @@ def test_ranks_agree(scene, cached_run):
     """1, 2 and 3 ranks: every column but wall to 1e-10, iteration counts exactly; no divergence."""
     one = cached_run(f"{SCENES[scene]} {TIGHT}", 1).series
     counts = {"step", "tension_its", "bending_its", "coupled_its", "nsolve"}
-    assert len(one["step"]) == 21 and one["div_max"].max() < 1e-11
+    assert len(one["step"]) == 11 and one["div_max"].max() < 1e-11
     for ranks in (2, 3):
         other = cached_run(f"{SCENES[scene]} {TIGHT}", ranks).series
         same_columns(one, other, 1e-10)
@@ -106,7 +106,7 @@ def test_table_7_agrees_with_the_prototype(cached_run):
 def test_total_form_agrees_with_disturbance_form(cached_run):
     """Shear with moving walls against u - u_inf with walls at rest; energies too, as both leave the background out.
 
-    Steps differ by what the solvers leave, 1e-12 a step, 20 steps.
+    Steps differ by what the solvers leave, 1e-12 a step, 10 steps.
     """
     one = cached_run(f"{SCENES['shear']} {TIGHT}", 1).series
     two = cached_run(f"{SCENES['shear']} {TIGHT} -flow_form total", 1).series

@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from harness import ENVIRONMENT, PETVES, read_series, run_tool, wait_for
+from harness import ENVIRONMENT, PETVES, read_series, run_tool, start, wait_for
 from restarts import without_wall
 
 from petves.sweeps import _name
@@ -87,6 +87,31 @@ def test_full_disk_deletes_nothing_and_goes_on(sweep, tmp_path):
         assert without_wall(home) == without_wall(tmp_path / value)
 
 
+def test_a_grid_that_grows_runs_what_is_new(sweep, tmp_path):
+    """Each pair of values once, and again one whose end is not known, from its checkpoint; the table has last rows. Other shared
+    options are refused."""
+    grid = ("--vary", "time_end", "0.02", "0.04")
+    status, _, rows = sweep("fluid_viscosity", "1", "2", *grid)
+    found = [(row["fluid_viscosity"], row["time_end"], row["status"]) for row in rows]
+    assert status == 0 and found == [(v, t, "done") for v in "12" for t in ("0.02", "0.04")]
+    for row in rows:
+        series = read_series(tmp_path / "grid" / row["folder"] / "series.csv")
+        assert float(row["energy_bending"]) == series["energy_bending"][-1] and float(row["time"]) == float(
+            row["time_end"]
+        )
+    times = lambda: {path: path.stat().st_mtime_ns for path in (tmp_path / "grid").glob("*/series.csv")}
+    before, interrupted = times(), tmp_path / "grid" / rows[0]["folder"]
+    (interrupted / "status.json").unlink()  # as after a kill: its checkpoint is there
+    rows_before = (interrupted / "series.csv").read_text()
+    assert len(sweep("fluid_viscosity", "1", "2", "3", *grid)[2]) == 6
+    again = {path.parent.name for path, time in times().items() if time != before.get(path)}
+    assert again == {rows[0]["folder"], "fluid_viscosity=3,time_end=0.02", "fluid_viscosity=3,time_end=0.04"}
+    assert (interrupted / "series.csv").read_text() == rows_before, "it went on from its checkpoint"
+    (tmp_path / "shared.opts").write_text("-domain_cells 32,32\n")
+    status, lines, _ = sweep("fluid_viscosity", "1")
+    assert status == 1 and "holds a sweep with other shared options" in lines[0]
+
+
 def test_only_bad_options_are_remembered(sweep, tmp_path):
     """No slots for the ranks, or a program that is killed, says nothing of the options; a value that is refused does."""
     (tmp_path / "bin").mkdir()
@@ -105,8 +130,7 @@ def test_only_bad_options_are_remembered(sweep, tmp_path):
 def test_runs_without_a_checkpoint_are_moved_aside(sweep, tmp_path):
     """What a run left that was killed before its first checkpoint, but never the folder of a live one."""
     home = tmp_path / "grid" / "checkpoint_every=0"
-    live = [PETVES, *SHARED.split(), "-checkpoint_every", "0", "-time_end", "1000", "-output_dir", str(home)]
-    process = subprocess.Popen(live, env={**os.environ, **ENVIRONMENT}, stdout=subprocess.DEVNULL)
+    process = start(home, f"{SHARED} -checkpoint_every 0 -time_end 1000", stdout=subprocess.DEVNULL)
     wait_for((home / "run.xmf").exists)
     status, lines, _ = sweep("checkpoint_every", "0")
     assert status == 1 and f"in use by process {process.pid}" in lines[0] and process.poll() is None, lines

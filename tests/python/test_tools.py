@@ -1,6 +1,5 @@
 """python3 -m petves plot, movie, compare, sweep, report; petves.load; run.xmf in VTK."""
 
-import csv
 import json
 import re
 import shutil
@@ -117,34 +116,9 @@ def test_compare_says_what_differs(folder, other, tmp_path):
     gap = np.linalg.norm(a.markers - b.markers, axis=2).max()
     assert f"Markers: {gap:.3e} apart at most" in "\n".join(lines)
     assert (tmp_path / "two.png").read_bytes()[:4] == b"\x89PNG"
-    assert "The options are the same." in tool("compare", folder, folder, "--output", tmp_path / "one.png")
-    assert "no such folder" in tool("compare", folder, tmp_path / "none", good=False)[0]
-
-
-def test_sweep_runs_each_once_and_goes_on(tmp_path):
-    shared = tmp_path / "shared.opts"
-    shared.write_text("-domain_cells 24,24\n-vesicle_semi_axes 0.4,0.5\n-time_end 0.02\n")
-    words = ("sweep", tmp_path / "grid", "--options-file", shared, "--jobs", 2, "--vary", "fluid_viscosity")
-    assert tool(*words, 1, 2, "--vary", "time_step", "0.01", "0.02") == [str(tmp_path / "grid" / "sweep.csv")]
-    rows = list(csv.DictReader((tmp_path / "grid" / "sweep.csv").open()))
-    found = [(row["fluid_viscosity"], row["time_step"]) for row in rows]
-    assert found == [(v, t) for v in "12" for t in ("0.01", "0.02")]
-    assert [row["status"] for row in rows] == ["done"] * 4
-    for row in rows:
-        series = read_series(tmp_path / "grid" / row["folder"] / "series.csv")
-        assert float(row["energy_bending"]) == series["energy_bending"][-1] and float(row["time"]) == 0.02
-    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "grid").glob("*/series.csv")}
-    interrupted = tmp_path / "grid" / rows[0]["folder"]
-    (interrupted / "status.json").unlink()  # as after a kill: its checkpoint is there
-    rows_before = (interrupted / "series.csv").read_text()
-    tool(*words, 1, 2, 3, "--vary", "time_step", "0.01", "0.02")
-    after = {path: path.stat().st_mtime_ns for path in (tmp_path / "grid").glob("*/series.csv")}
-    again = {path.parent.name for path in after if after[path] != before.get(path)}
-    assert again == {rows[0]["folder"], "fluid_viscosity=3,time_step=0.01", "fluid_viscosity=3,time_step=0.02"}
-    assert (interrupted / "series.csv").read_text() == rows_before, "it went on from its checkpoint"
-    assert len((tmp_path / "grid" / "sweep.csv").read_text().splitlines()) == 7
-    shared.write_text("-domain_cells 32,32\n")
-    assert "holds a sweep with other shared options" in tool(*words, 1, good=False)[0]
+    assert "The options are the same." in petves.compare(folder, folder, tmp_path / "one.png")[0]
+    with pytest.raises(petves.Error, match="no such folder"):
+        petves.compare(folder, tmp_path / "none")
 
 
 def test_report_is_whole_and_offline(folder, tmp_path):
