@@ -110,22 +110,6 @@ def test_box_without_walls_step_after_step(tmp_path, inertia):
     assert along["center_x"][-1] == pytest.approx(-down["center_y"][-1], rel=1e-9)
 
 
-@pytest.mark.parametrize("boundary", ["periodic", "wall"])
-def test_speed_does_not_depend_on_the_unit_of_length(tmp_path, boundary):
-    """A net force over periodic images: ln h of the exact part and that of the lattice cancel."""
-    speeds = []
-    for length in (1.0, 2.0**10):
-        box = ",".join(repr(x * length) for x in (-1, 1, -1, 1))
-        scene = f"-domain_box {box} -domain_cells 24,24 -domain_bc_x periodic -domain_bc_y {boundary} -time_step .01"
-        scene += f" -time_end .01 -fluid_viscosity {length**2!r} -fluid_inertia none"
-        scene += f" -vesicle_bending {0.01 * length**5!r} -vesicle_semi_axes {0.3 * length!r},{0.5 * length!r}"
-        scene += f" -vesicle_center {0.1 * length!r},{0.07 * length!r}"
-        scene += f" -fluid_gravity {0.5 * length!r},{-length!r} -vesicle_density_difference 1 -coupled_ksp_rtol 1e-12"
-        series = run_petves(tmp_path / str(length), scene).series
-        speeds.append([series["velocity_x"][-1] / length, series["velocity_y"][-1] / length])
-    assert speeds[1] == pytest.approx(speeds[0], rel=1e-10)
-
-
 def test_the_velocity_in_cells_near_a_heavy_vesicle(tmp_path):
     """It is that of a grid twice as fine, next to the membrane too, and in another unit of length and time."""
     fields = []

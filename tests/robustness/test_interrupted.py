@@ -90,11 +90,13 @@ def test_killed_at_any_moment(tmp_path):
     same_frames(folder, whole.folder)
 
 
-def break_tables(folder: Path) -> int:
-    """Overwrite everything in the run.h5 of a killed run but the frames that its checkpoint counts; its last step."""
+def break_tables(folder: Path, width: int = 8) -> int:
+    """Overwrite everything in the run.h5 of a killed run but the frames that its checkpoint counts; its last step. A number of
+    the fields has `width` bytes."""
     with h5py.File(folder / "checkpoint.h5") as file:
         last, saved = int(file.attrs["step"]), int(file.attrs["frames"])
-        bytes_of = [8 * file[name].size for name in ("fluid/p",) * 3 + ("vesicle/markers",) * 2 + ("vesicle/tension",)]
+        bytes_of = [width * file["fluid/p"].size] * 3
+        bytes_of += [8 * file[name].size for name in ("vesicle/markers", "vesicle/markers", "vesicle/tension")]
         bytes_of.append(8)  # of the pressure gradient
     rows = [row.split() for row in (folder / "run.h5.index").read_text().splitlines()]
     kept = [(int(x), n) for row in rows if int(row[0]) < saved for x, n in zip(row[2:], bytes_of)]
@@ -106,19 +108,19 @@ def break_tables(folder: Path) -> int:
     return last
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_killed_run_with_broken_tables(ranks, tmp_path):
+@pytest.mark.parametrize("ranks, precision", [(1, "double"), (2, "double"), (1, "single")])
+def test_killed_run_with_broken_tables(ranks, precision, tmp_path):
     """Everything in run.h5 but its frames is overwritten: with the index of a killed run it is made anew."""
-    folder = tmp_path / "run"
+    folder, options = tmp_path / "run", f"{KILLED} -output_precision {precision}"
     with open(tmp_path / "errors", "w") as file:
-        process = start(folder, f"{KILLED} -time_end 100", stdout=subprocess.DEVNULL, stderr=file)
+        process = start(folder, f"{options} -time_end 100", stdout=subprocess.DEVNULL, stderr=file)
         wait_for_rows(folder, 6)
         process.kill()
     assert process.wait() == -signal.SIGKILL, (tmp_path / "errors").read_text()
-    last = break_tables(folder)
+    last = break_tables(folder, 8 if precision == "double" else 4)
     end = f"-time_end {0.02 * (last + 5)}"
-    run_petves(folder, f"{KILLED} {end} -restart {folder}/checkpoint.h5", ranks)
-    whole = run_petves(tmp_path / "whole", f"{KILLED} {end}")
+    run_petves(folder, f"{options} {end} -restart {folder}/checkpoint.h5", ranks)
+    whole = run_petves(tmp_path / "whole", f"{options} {end}")
     assert not (folder / "run.h5.index").exists(), "of a run that was killed only"
     same_frames(folder, whole.folder, 0 if ranks == 1 else 1e-9)
 

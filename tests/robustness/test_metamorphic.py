@@ -17,44 +17,18 @@ import numpy as np
 import pytest
 from drawn_scenes import OF_FREE, OF_SOLIDS, OF_VESICLES, Draw, Scene
 from harness import read_series, run_petves
+from unit_powers import column_power, option_power
 
 SEED, SCENES = int(os.environ.get("FUZZ_SEED", 2025)), int(os.environ.get("FUZZ_SCENES", 40))
 FEW = int(os.environ.get("FUZZ_CHANGES", 3))  # changes of a scene
 
 
-def units(table: str) -> dict:
-    """Rows of name, kind, powers of length and of time."""
-    rows = [row.split() for row in table.split(";")]
-    return {name: (kind, int(length), int(time)) for name, kind, length, time in rows}
-
-
-#: What each number of a scene is: how it turns with the axes (Change.turned), its powers of length and of time.
-OPTIONS = units(
-    """
-    domain_box box 1 0; domain_cells pair 0 0; domain_bc pair 0 0; flow_rate scalar 0 -1;
-    flow_peak_velocity along-x 1 -1; flow_half_width scalar 1 0; flow_center place 1 0; flow_velocity vector 1 -1;
-    fluid_viscosity scalar 2 -1; fluid_gravity vector 1 -2; vesicle_bending scalar 5 -2; obstacle_center place 1 0;
-    obstacle_radius scalar 1 0; obstacle_velocity vector 1 -1; obstacle_rotation spin 0 -1; obstacle_force vector 3 -2; obstacle_torque spin 4 -2;
-    obstacle_frequency scalar 0 -1; contact_repulsion scalar 2 -2; contact_repulsion_range scalar 1 0;
-    membrane_stretching scalar 3 -2; membrane_viscosity scalar 3 -1; membrane_permeability scalar -1 1;
-    membrane_osmotic scalar 2 -2; contact_potential scalar 2 -2; contact_potential_distance scalar 1 0;
-    contact_adhesion scalar 3 -2; contact_adhesion_range scalar 1 0; time_step scalar 0 1; time_end scalar 0 1;
-    time_adapt_max_step scalar 0 1; output_every scalar 0 1
-    """
-)
-#: The columns of series.csv, the last markers, and the velocity in cells.
-COLUMNS = units(
-    """
-    time scalar 0 1; dt scalar 0 1; energy_kinetic scalar 4 -2; energy_bending scalar 4 -2;
-    energy_gravity scalar 4 -2; energy_stretching scalar 4 -2; energy_contact scalar 4 -2; energy_potential scalar 4 -2; area scalar 2 0; length scalar 1 0;
-    area_error scalar 0 0; length_error scalar 0 0; edge_ratio scalar 0 0; center place 1 0; inclination angle 0 0;
-    frequency scalar 0 -1; area_shift scalar 1 0; normal_speed scalar 1 -1; velocity vector 1 -1; gap scalar 1 0;
-    viscosity_wall scalar 0 0; viscosity scalar 0 0; normal_stress_wall scalar 2 -2; normal_stress scalar 2 -2;
-    pressure_drop along-x 2 -2; flux along-x 2 -1; obstacle_force vector 3 -2; obstacle_torque spin 4 -2;
-    obstacle_center place 1 0; obstacle_angle spin 0 0; obstacle_rotation spin 0 -1; obstacle_velocity vector 1 -1; div_max scalar 0 -1; surface_div_max scalar 0 -1;
-    markers place 1 0; field vector 1 -1
-    """
-)
+#: How numbers of a scene and columns turn with the axes (Change.turned), but for scalars.
+KINDS = {"domain_box": "box", "domain_cells": "pair", "domain_bc": "pair", "inclination": "angle"}
+KINDS |= dict.fromkeys(("flow_center", "obstacle_center", "center", "markers"), "place")
+KINDS |= dict.fromkeys("fluid_gravity flow_velocity obstacle_velocity obstacle_force velocity field".split(), "vector")
+KINDS |= dict.fromkeys(("obstacle_rotation", "obstacle_torque", "obstacle_angle"), "spin")
+KINDS |= dict.fromkeys(("flow_peak_velocity", "pressure_drop", "flux"), "along-x")
 #: Counts, and residuals of solvers: the same in other units only.
 COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
 RESIDUALS = ("div_max", "surface_div_max")
@@ -110,8 +84,8 @@ class Change:
         numbers = {}
         rate = {"shear": "spin", "extension": "strain"}.get(scene.text["flow_type"], "scalar")
         for name, value in scene.numbers.items():
-            kind, length, time = OPTIONS.get(name, ("scalar", 0, 0))
-            value = self.turned(rate if name == "flow_rate" else kind, value)
+            length, time = option_power(name)
+            value = self.turned(rate if name == "flow_rate" else KINDS.get(name, "scalar"), value)
             numbers[name] = value * (self.length**length * self.time**time) if length or time else value
             order = self.vesicles if name in OF_VESICLES else self.solids if name in OF_SOLIDS + OF_FREE else None
             numbers[name] = numbers[name] if order is None else numbers[name][order]
@@ -130,7 +104,7 @@ class Change:
 
     def back(self, stem: str, x: np.ndarray) -> np.ndarray:
         """A column of the changed run, [rows, components], as it is in the scene's frame and units."""
-        kind, length, time = COLUMNS[stem]
+        kind, (length, time) = KINDS.get(stem, "scalar"), column_power("u" if stem == "field" else stem)
         if kind == "angle":  # of an axis: twice the angle has no jump
             axis = np.exp(1j * x[:, 0])
             axis = np.c_[axis.real, axis.imag] @ self.turn
@@ -180,16 +154,16 @@ def read(scene: Scene, change: Change, folder: Path) -> dict:
     for k, body in enumerate(change.vesicles or range(len(scene.vesicles))):
         own = markers[start[k] : start[k + 1]]  # turned counter-clockwise, the first stays
         found["markers", body + 1] = np.roll(own[::-1], 1, axis=0) if change.mirrors else own
-    return {key: change.back(key[0], x) if key[0] in COLUMNS else x for key, x in found.items()}
+    return {key: change.back(key[0], x) for key, x in found.items()}
 
 
 def scale(scene: Scene, base: dict, stem: str) -> float:
     """What differences of a column are measured in: its largest value, places in cells, residuals in 1/step."""
-    kind, length, time = COLUMNS[stem]
+    length, time = column_power("u" if stem == "field" else stem)
     box, dt = scene.numbers["domain_box"], scene.numbers["time_step"]
     h, nu = (box[1] - box[0]) / scene.numbers["domain_cells"][0], scene.numbers["fluid_viscosity"]
     natural = {1: dt, 0: h**length, -1: h**length / dt, -2: nu * h ** (length - 2) / dt}[time]
-    if kind == "place" or stem in ("gap", "area_shift", "area_error", "length_error", *RESIDUALS):
+    if KINDS.get(stem) == "place" or stem in ("gap", "area_shift", "area_error", "length_error", *RESIDUALS):
         return natural
     values = np.abs(np.concatenate([x.ravel() for (name, _), x in base.items() if name == stem]))
     return max(np.nanmax(values, initial=0), 1e-2 * natural)
@@ -211,7 +185,7 @@ def is_compared(scene: Scene, change: Change, stem: str, body: int) -> bool:
         return False
     if stem.startswith("normal_stress") and change.shift.any():  # SUM f x of a net force goes by where x = 0 is
         return not (scene.kind != "none" or "fluid_gravity" in scene.numbers)
-    return not (COLUMNS.get(stem, "-")[0] == "along-x" and change.swaps)
+    return not (KINDS.get(stem) == "along-x" and change.swaps)
 
 
 def difference(scene: Scene, base: dict, changed: dict, change: Change) -> tuple[float, str]:

@@ -1,14 +1,12 @@
-"""One scene of each kind in other units of length and time, powers of two from 2^-40 to 2^40: the same rows and iterations;
-and a red cell in metres. The units of options are those that -help says."""
+"""One scene of each kind in other units of length and time, powers of two from 2^-40 to 2^40: the same rows and iterations.
+The units of options are those that -help says."""
 
-import re
 import shlex
-import subprocess
 
 import numpy as np
 import pytest
-from harness import PETVES, run_petves
-from test_metamorphic import OPTIONS
+from harness import run_petves
+from unit_powers import option_powers, powers
 
 from petves.dataset import unit
 
@@ -30,6 +28,9 @@ KINDS = {
     "obstacles": f"{BOX} {SHEAR} {POST}",
     "moving": f"{BOX} {POST} -obstacle_moving -obstacle_velocity 0.3,0.1 -obstacle_rotation 1 -obstacle_frequency 5",
     "gravity": f"{STOKES} -fluid_gravity 0,-1 -vesicle_density_difference 1",
+    "gravity in a channel": f"{STOKES} -domain_bc_x periodic -fluid_gravity 0.5,-1 -vesicle_density_difference 1",
+    "gravity, periodic": f"{STOKES} -domain_bc_x periodic -domain_bc_y periodic -fluid_gravity 0.5,-1 "
+    "-vesicle_density_difference 1",
     "repulsion": f"{STOKES} -vesicle_semi_axes 0.4,0.6 -vesicle_count 2 -vesicle_center -0.45,0,0.45,0 "
     "-contact_repulsion 1 -contact_repulsion_range 0.25 -contact_adhesion 0.1 -contact_adhesion_range 0.3",
     "suspension": f"{STOKES} -domain_bc_x periodic -domain_bc_y periodic -vesicle_packing 0.3 -vesicle_semi_axes 0.25,0.4",
@@ -45,34 +46,10 @@ KINDS = {
 COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
 
 
-def powers(text: str) -> tuple[int, int]:
-    """Of length and time, of a unit such as length^3/time^2."""
-    over, _, under = text.partition("/")
-
-    def power(word: str, part: str) -> int:
-        found = re.fullmatch(rf"{word}(?:\^(\d+))?", part)
-        return int(found[1] or 1) if found else 0
-
-    return power("length", over) - power("length", under), power("time", over) - power("time", under)
-
-
-@pytest.fixture(scope="module")
-def option_units() -> dict:
-    """Powers of length and time by option, of its line in the help that ends in (unit)."""
-    text = subprocess.run([PETVES, "-help", "options"], capture_output=True, text=True, check=True).stdout
-    found = re.findall(r"^  (-\w+)[^\n]*\n((?:      [^\n]*\n)+)", text, re.M)
-    units = {}
-    for name, words in found:
-        for part in re.findall(r"\(([^()]*)\)", " ".join(words.split())):
-            if any(powers(part.split(";")[0])):
-                units[name] = powers(part.split(";")[0])
-    return units
-
-
-def run(options: str, folder, units: dict, length: float = 1, time: float = 1) -> dict:
-    words = shlex.split(options)
+def run(options: str, folder, length: float = 1, time: float = 1) -> dict:
+    words, units = shlex.split(options), option_powers()
     for k, word in enumerate(words):
-        if word in units and any(units[word]):
+        if word in units:
             factor = length ** units[word][0] * time ** units[word][1]
             words[k + 1] = ",".join(repr(float(x) * factor) for x in words[k + 1].split(","))
     tight = [] if "split" in options or "penalty" in options else ["-coupled_ksp_rtol", "1e-10"]
@@ -82,23 +59,17 @@ def run(options: str, folder, units: dict, length: float = 1, time: float = 1) -
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_units_change_nothing(kind, option_units, tmp_path):
+def test_units_change_nothing(kind, tmp_path):
     """Differences are over the largest number of any column of the same unit; of rates over 1/time as well."""
-    base = run(KINDS[kind], tmp_path / "0", option_units)
+    base = run(KINDS[kind], tmp_path / "0")
     largest = {unit(name): 1.0 for name in base if powers(unit(name)) == (0, 0)}
     largest |= {unit(name): 1 / base["time"][-1] for name in base if powers(unit(name)) == (0, -1)}
     for name, column in base.items():
         largest[unit(name)] = max(largest.get(unit(name), 0), np.nanmax(np.abs(column), initial=0))
     for k, m in ((-40, 40), (40, -40), (-20, 0)):
-        other = run(KINDS[kind], tmp_path / f"{k} {m}", option_units, 2.0**k, 2.0**m)
+        other = run(KINDS[kind], tmp_path / f"{k} {m}", 2.0**k, 2.0**m)
         for name, column in base.items():
             apart = np.nan_to_num(np.abs(other[name] - column))
             assert apart.shape == column.shape
-            within = 0 if name in COUNTS else 1e-9 * largest[unit(name)]
+            within = 0 if name in COUNTS else 1e-10 * largest[unit(name)]
             assert apart.max() <= within, (name, k, m, column, other[name])
-
-
-def test_options_say_their_units(option_units):
-    for name, (_, length, time) in OPTIONS.items():
-        for option in [f"-{name}_x", f"-{name}_y"] if name == "flow_center" else [f"-{name}"]:
-            assert (length, time) == (0, 0) or option_units.get(option) == (length, time), option
