@@ -111,14 +111,6 @@ def test_version_is_one_line(word, ranks):
     assert done.returncode == 0 and not done.stderr and re.fullmatch(pattern, done.stdout), done.stdout
 
 
-def test_version_is_the_package_s():
-    import petves
-
-    project = (ROOT / "python" / "pyproject.toml").read_text()
-    version = mpirun([PETVES, "-version"], 1).stdout.split(",")[0].split()[1]
-    assert version == petves.__version__ == re.search(r'^version = "(.*)"', project, re.MULTILINE)[1]
-
-
 def test_run_takes_a_file(here):
     Path("my.opts").write_text("\n".join(" ".join(SMALL[k : k + 2]) for k in range(0, len(SMALL), 2)) + "\n")
     done = mpirun([PETVES, "run", "my.opts", "-output_dir", "one"], 2)

@@ -15,6 +15,7 @@ from studies.reproduction.scene_figures import keller_skalak
 SCENES = ("energy", "relax", "shear_convergence", "equilibrium", "poiseuille", "shear")
 TWO = ("default", "two_vesicles", "suspension", *(f"paper/{name}" for name in SCENES))
 RANKS = {f"{name}.opts": 1 for name in (*SCENES, "free")} | {f"{name}.opts": 2 for name in TWO}
+QUIET = {name for name, ranks in RANKS.items() if ranks == 1} - {"shear_convergence.opts"}
 
 
 def run_file(name, folder, options="", ranks=1):
@@ -24,14 +25,17 @@ def run_file(name, folder, options="", ranks=1):
 
 @pytest.mark.parametrize("name", RANKS)
 def test_file_starts(name, tmp_path):
-    """The header has the command; two steps solve the constraints and keep area and length."""
+    """The header has the command; two steps solve the constraints and keep area and length. The first tenth of QUIET does
+    not warn."""
     text = (ROOT / "runs" / name).read_text()
     assert f"mpirun -n {RANKS[name]} bin/petves -options_file runs/{name}" in text
-    dt = float(re.search(r"^-time_step (\S+)", text, re.MULTILINE)[1])
+    dt, whole = (float(re.search(rf"^-time_{what} (\S+)", text, re.MULTILINE)[1]) for what in ("step", "end"))
+    end = whole / 10 if name in QUIET else 2 * dt
     shorter = "-domain_box 0,12,0,6 -domain_cells 384,192" if name == "paper/poiseuille.opts" else ""  # of 384, 12
-    series = run_file(name, tmp_path, f"-time_end {2 * dt!r} {shorter}", RANKS[name]).series
-    assert series["time"][-1] == pytest.approx(2 * dt)
-    assert max(abs(series["area_error"][-1]), abs(series["length_error"][-1])) < 1e-3
+    run = run_file(name, tmp_path, f"-time_end {end!r} {shorter}", RANKS[name])
+    series = run.series
+    assert series["time"][-1] == pytest.approx(end) and not (name in QUIET and run.summary["warnings"])
+    assert max(np.abs(series[f"{what}_error"][:3]).max() for what in ("area", "length")) < 1e-3
     assert series["div_max"].max() < 1e-8
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from harness import PAPER, attribute, run_petves
 from restarts import same_columns
+from test_warnings import warnings
 
 STRETCHED = f"{PAPER} -domain_cells 32,32 -flow_type extension -flow_rate 10 -time_step 0.01 -time_end 1"
 
@@ -67,29 +68,10 @@ PAIR = "-vesicle_count 2 -vesicle_semi_axes 0.2"
 def test_contact_is_warned_of_once(options, who, tmp_path):
     """With the paper's scheme, which has no near field."""
     options = f"{PAPER} -domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01"
-    run = run_petves(tmp_path / "run", options, ranks=2)
-    lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
-    assert len(lines) == 1 and who in lines[0] and "closer than 2 cells after step 1," in lines[0], run.stdout
-
-
-def test_no_warning_without_contact(tmp_path):
-    options = f"{PAPER} -vesicle_count 2 -vesicle_semi_axes 0.2,0.5 -vesicle_center -0.35,0,0.35,0"
-    run = run_petves(tmp_path / "run", f"-domain_cells 32,32 {options} -time_step 0.002 -time_end 0.01")
-    assert "petves: warning" not in run.stdout
-
-
-def test_markers_that_do_not_resolve_a_shape(tmp_path):
-    """Warned of once, on any number of ranks; as many as the warning says are enough."""
-    scene = "-domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none -vesicle_allow_close_markers "
-    scene += "-domain_box 0,8,0,8 -flow_type shear -vesicle_center 2.5,4,5.5,4 -vesicle_count 2 -vesicle_area 1,1 "
-    scene += "-vesicle_reduced_area 0.95,0.7 -time_step 0.05 -time_end 0.3 -vesicle_markers"
-    run = run_petves(tmp_path / "run", f"{scene} 17", ranks=2)
-    lines = [line for line in run.stdout.splitlines() if "petves: warning" in line]
-    assert len(lines) == 1 and "17 markers do not resolve vesicle 2 after step 1," in lines[0], run.stdout
-    listed = run.summary["warnings"]
-    assert [f"petves: warning: {text}" for text in listed] == lines
-    wanted = lines[0].split("try -vesicle_markers ")[1]
-    assert "petves: warning" not in run_petves(tmp_path / "more", f"{scene} {wanted}").stdout
+    (line,) = warnings(tmp_path / "run", options, 2)
+    assert who in line and "closer than 2 cells after step 1," in line
+    apart = f"{options} {PAIR},0.5 -vesicle_center -0.35,0,0.35,0 -vesicle_bending 0.01 -domain_bc_x wall"
+    assert not warnings(tmp_path / "apart", apart)
 
 
 PRESSED = "-domain_box -4,4,-4,4 -domain_cells 32,32 -flow_type extension -flow_rate -1 -fluid_inertia none "
@@ -136,4 +118,4 @@ def test_window_of_unbounded_fluid_has_no_corner(tmp_path):
     """A vesicle may lie over the corner of its window, and outside of it."""
     scene = "-domain_box 0,2,0,2 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free -fluid_inertia none "
     scene += "-vesicle_semi_axes 0.3,0.4 -vesicle_center -0.1,2.5 -time_step 0.01 -time_end 0.02"
-    assert "petves: warning" not in run_petves(tmp_path / "run", scene).stdout
+    assert not warnings(tmp_path / "run", scene)

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 import yaml
-from harness import ENVIRONMENT, PROGRAMS, ROOT, SANITIZE, SITE
+from harness import ENVIRONMENT, PETVES, PROGRAMS, ROOT, SANITIZE, SITE, mpirun
+
+import petves
 
 PACKAGING = ROOT / "packaging"
 OWN = os.environ.get("PETSC_DIR")  # of another PETSc than Debian's, which pkg-config does not find by itself
@@ -41,7 +43,9 @@ def test_one_version():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     project = re.search(r'^version = "(.*)"', (ROOT / "python" / "pyproject.toml").read_text(), re.MULTILINE)[1]
     latest = re.search(r"^## \[(\d+\.\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1]
+    program = mpirun([PETVES, "-version"], 1).stdout.split(",")[0].split()[1]
     assert VERSION == str(citation["version"]) == project == latest == recipe()["context"]["version"]
+    assert program == petves.__version__ == VERSION
 
 
 def test_citation_has_what_its_format_asks_for():

@@ -44,6 +44,7 @@ def same_frames(one: Path, two: Path, within: float = 0) -> None:
     ours, theirs = frames(one), frames(two)
     assert ours.keys() == theirs.keys()
     for name in theirs:
+        assert ours[name].dtype == theirs[name].dtype, name
         np.testing.assert_allclose(ours[name], theirs[name], rtol=0, atol=within, err_msg=name)
 
 
