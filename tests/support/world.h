@@ -201,3 +201,9 @@ static inline void TestWorldDestroy(TestWorld *w) {
   TestCall(FluidDestroy(&w->fluid));
   TestCall(SceneDestroy(&w->scene));
 }
+
+/* TestStokeslet - the velocity `response` at the offset (x, y) of a unit force along `source`, nu = 1. */
+static inline PetscReal TestStokeslet(int source, int response, PetscReal x, PetscReal y) {
+  const PetscReal r2 = x * x + y * y, d[2] = {x, y};
+  return ((source == response ? -0.5 * PetscLogReal(r2) : 0) + d[source] * d[response] / r2) / (4 * PETSC_PI);
+}

@@ -9,12 +9,6 @@ static PetscReal Response(const OffsetTable *t, int source, int response, PetscI
   return source ? OffsetAt(t, OFFSET_VU, -i, -j) : OffsetAt(t, OFFSET_VU, i, j);
 }
 
-/* What the response tends to: the Stokeslet at the offset (x, y), nu = 1. */
-static PetscReal Stokeslet(int source, int response, PetscReal x, PetscReal y) {
-  const PetscReal r2 = x * x + y * y, d[2] = {x, y};
-  return ((source == response ? -0.5 * PetscLogReal(r2) : 0) + d[source] * d[response] / r2) / (4 * PETSC_PI);
-}
-
 /* Entry (i, j) of v lies half a cell left of and above that of u. */
 static void Offset(int source, int response, PetscInt i, PetscInt j, PetscReal d[2]) {
   const PetscReal half = 0.5 * (response - source);
@@ -31,8 +25,8 @@ static PetscReal RingError(const OffsetTable *t, PetscInt radius) {
         Offset(k / 2, k % 2, i, j, d);
         const PetscReal r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
         if (PetscAbsReal(r - radius) > 0.5) continue;
-        worst = PetscMax(worst,
-                         r * r * PetscAbsReal(Response(t, k / 2, k % 2, i, j) - Stokeslet(k / 2, k % 2, d[0], d[1])));
+        worst = PetscMax(
+            worst, r * r * PetscAbsReal(Response(t, k / 2, k % 2, i, j) - TestStokeslet(k / 2, k % 2, d[0], d[1])));
       }
   return worst;
 }
