@@ -141,9 +141,9 @@ static void Agrees(const char name[], PetscReal within, const char options[]) {
 
 /* The paper's membrane, of both orders, with and without bending, in every kind of box. */
 static void PaperScenes(void) {
-  static const char *const box[] = {" -domain_cells 32,32",
-                                    " -domain_cells 40,32 -domain_box 0,2.5,-1,1 -vesicle_center 2.4,0.1" CHANNEL,
-                                    " -domain_cells 32,32 -vesicle_center 0,0.9" SEAMS};
+  static const char *const box[] = {" -domain_cells 24,24",
+                                    " -domain_cells 30,24 -domain_box 0,2.5,-1,1 -vesicle_center 2.4,0.1" CHANNEL,
+                                    " -domain_cells 24,24 -vesicle_center 0,0.9" SEAMS};
   static const char *const flow[] = {" -vesicle_angle 20", SHEAR};
   for (int k = 0; k < 12; k++) {
     const int order = 1 + k % 2, shear = k / 2 % 2;
@@ -179,7 +179,7 @@ static void PaperScenes(void) {
   POISEUILLE " -flow_peak_velocity 1.5 -obstacle_shape constriction -obstacle_throat .48 -obstacle_length 1 "          \
              "-obstacle_center 1.5,0 -vesicle_semi_axes .45,.16 -vesicle_center 1.3,.5 -vesicle_bending .1 "           \
              "-domain_cells 72,24 -time_step .003 -time_end .009"
-#define CELLS SHEAR STEPS " -domain_cells 32,32"
+#define CELLS SHEAR STEPS " -domain_cells 24,24"
 
 static const struct {
   const char *name, *options;
@@ -190,8 +190,8 @@ static const struct {
     {"order 1", CELLS " -scheme_order 1", 1e-9},
     {"chords", CELLS " -membrane_derivative bending", 1e-9},
     {"unsteady", CELLS " -fluid_inertia unsteady", 1e-9},
-    {"channel", CELLS " -domain_box 0,2.5,-1,1 -domain_cells 40,32 -vesicle_center 1.2,0.1" CHANNEL, 1e-9},
-    {"seam", CELLS " -domain_cells 33,33 -vesicle_center 0.97,-0.95" SEAMS, 1e-9},
+    {"channel", CELLS " -domain_box 0,2.5,-1,1 -domain_cells 30,24 -vesicle_center 1.2,0.1" CHANNEL, 1e-9},
+    {"seam", CELLS " -domain_cells 25,25 -vesicle_center 0.97,-0.95" SEAMS, 1e-9},
     {"close markers", CELLS " -vesicle_spacing 0.7", 1e-9},
     {"pair", CELLS PAIR " -vesicle_center -0.29375,0.05,0.29375,-0.05", 1e-9},
     {"pair over a seam", CELLS PAIR " -vesicle_center -0.925,0.05,0.725,-0.05" CHANNEL, 1e-9},
@@ -203,7 +203,7 @@ static const struct {
     {"quasi-steady in a channel", CELLS " -fluid_inertia none" CHANNEL, 1e-9},
     {"quasi-steady, periodic", CELLS " -fluid_inertia none" SEAMS, 1e-9},
     {"convective", CELLS " -fluid_inertia convective -time_step 0.005 -time_end 0.02", 1e-9},
-    {"no vesicle", " -vesicle_shape none -domain_cells 32,32 -flow_type shear -fluid_inertia unsteady" STEPS, 1e-9},
+    {"no vesicle", " -vesicle_shape none -domain_cells 24,24 -flow_type shear -fluid_inertia unsteady" STEPS, 1e-9},
     {"box part between walls", SMALL " -fluid_inertia none", 1e-9},
     {"box part in a channel", SMALL " -fluid_inertia none" CHANNEL, 1e-9},
     {"contrast between walls", UNLIKE, 1e-9},
