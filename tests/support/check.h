@@ -60,7 +60,7 @@ static inline PetscReal *TestReals(PetscInt n) {
 
 /* TestText - a text as of printf. TestScratch - the name of a scratch file. The end of the program frees them. */
 static inline const char *PETSC_ATTRIBUTE_FORMAT(1, 2) TestText(const char format[], ...) {
-  char text[2048], *kept;
+  char text[4096], *kept;
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof(text), format, arguments);

@@ -17,20 +17,12 @@
 
 /* TestScene - the scene of PAPER_MEMBRANE and an options text, which replaces what earlier scenes of the same program
    set. The text of this and of what else is made from one is a format, as that of printf. */
-static inline void TestSceneOf(Scene *scene, const char format[], va_list arguments) {
-  char options[4096];
-  vsnprintf(options, sizeof(options), format, arguments);
+#define TestScene(scene, ...) TestSceneOf(scene, TestText(__VA_ARGS__))
+static inline void TestSceneOf(Scene *scene, const char options[]) {
   TestCall(PetscOptionsClear(NULL));
   TestCall(PetscOptionsInsertString(NULL, PAPER_MEMBRANE));
   TestCall(PetscOptionsInsertString(NULL, options));
   TestCall(SceneCreate(PETSC_COMM_WORLD, NULL, NULL, scene));
-}
-
-static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) TestScene(Scene *scene, const char format[], ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  TestSceneOf(scene, format, arguments);
-  va_end(arguments);
 }
 
 /* The membranes of a scene without a fluid. Every rank has all vesicles to itself: the layout is of PETSC_COMM_SELF. */
@@ -42,11 +34,9 @@ typedef struct {
 } TestMembrane;
 
 /* TestMembraneCreate - from an options text after PAPER_MEMBRANE. */
-static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) TestMembraneCreate(TestMembrane *m, const char format[], ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  TestSceneOf(&m->scene, format, arguments);
-  va_end(arguments);
+#define TestMembraneCreate(m, ...) TestMembraneOf(m, TestText(__VA_ARGS__))
+static inline void TestMembraneOf(TestMembrane *m, const char options[]) {
+  TestSceneOf(&m->scene, options);
   TestCall(LayoutCreate(PETSC_COMM_SELF, m->scene->shape.vesicles, m->scene->shape.start, NULL, &m->layout));
   TestCall(MembraneCreate(m->layout, m->scene->shape.X, &m->scene->membrane, &m->membrane));
   m->M = m->layout->M;
@@ -173,22 +163,15 @@ static inline void TestWorldScheme(TestWorld *w) {
 
 /* TestWorldCreate - placed, for the first step's a0, without a scheme; TestRunCreate - with a scheme, which places:
    from an options text after PAPER_MEMBRANE. */
-static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) TestWorldCreate(TestWorld *w, const char format[], ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  TestSceneOf(&w->scene, format, arguments);
-  va_end(arguments);
+#define TestWorldCreate(w, ...) TestWorldOf(w, TestText(__VA_ARGS__), PETSC_FALSE)
+#define TestRunCreate(w, ...) TestWorldOf(w, TestText(__VA_ARGS__), PETSC_TRUE)
+static inline void TestWorldOf(TestWorld *w, const char options[], PetscBool scheme) {
+  TestSceneOf(&w->scene, options);
   TestWorldBuild(w);
-  TestWorldPlace(w->fluid->a0, w);
-}
-
-static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) TestRunCreate(TestWorld *w, const char format[], ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  TestSceneOf(&w->scene, format, arguments);
-  va_end(arguments);
-  TestWorldBuild(w);
-  TestWorldScheme(w);
+  if (scheme)
+    TestWorldScheme(w);
+  else
+    TestWorldPlace(w->fluid->a0, w);
 }
 
 static inline void TestWorldDestroy(TestWorld *w) {
