@@ -98,34 +98,9 @@ static void CheckMeasures(Box *b, PetscBool squares, const StreamMeasures *m) {
         b->options, m->pressure, pressure);
 }
 
-/* A channel without flux has a uniform pressure gradient, which is not in p. */
-static void RemoveMeanU(Grid g, Vec w) {
-  const PetscInt n = GridLocalU(g);
-  PetscScalar *a = TestArray(w), sum = 0;
-  for (PetscInt k = 0; k < n; k++) sum += a[k];
-  TestSum(1, &sum);
-  for (PetscInt k = 0; k < n; k++) a[k] -= sum / ((PetscReal)g->n[0] * g->n[1]);
-}
-
-/* The velocity and the pressure of the force b->r, by the equations that they obey: H u + G p = r but for a uniform
-   force where that moves nothing, G^T u = 0. */
+/* The velocity and the pressure of the force b->r, by the equations that they obey (test_stokes_solve.c). */
 static void SolveExactly(Box *b) {
-  const Fluid f = b->fluid;
-  const Grid g = f->grid;
-  const PetscBool still = !g->wall[0] && !g->wall[1] && (f->alpha == 0 || f->held) ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal divergence;
-  Vec left;
-  TestVecs(b->r, &left, NULL);
   TestCall(StokesSolve(b->stokes, b->r, NULL, b->exact, b->p));
-  TestCall(MatMult(f->H, b->exact, left));
-  TestCall(GridGradient(g, 1, b->p, PETSC_TRUE, left));
-  TestCall(VecAXPY(left, -1, b->r));
-  if (still) TestCall(FluidRemoveMean(f, left));
-  if (f->zero_flux) RemoveMeanU(g, left);
-  const PetscReal error = TestNorm(NORM_2, left) / TestNorm(NORM_2, b->r);
-  CHECK(error < TOLERANCE, "%s: H u + G p = r, %.1e", b->options, error);
-  TestCall(GridLargestDivergence(g, b->exact, NULL, &divergence));
-  CHECK(divergence < TOLERANCE * TestNorm(NORM_2, b->exact) / g->h, "%s: G^T u = 0, %.1e", b->options, divergence);
 }
 
 /* |x - y| is less than the tolerance times |y|; x is overwritten. */
