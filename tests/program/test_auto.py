@@ -254,17 +254,6 @@ def test_walls_farther_than_measured(tmp_path):
     assert float(found) == pytest.approx(last * 3.2**2 / 8 / float(near), rel=0.05)
 
 
-def test_last_steps_are_of_one_size(tmp_path):
-    """-time_adapt error does not end with a sliver of a step, and -time_adapt_max_step is kept."""
-    for end in (0.1, 0.1234, 0.131):
-        scene = f"-domain_cells 32,32 {QUIET} -time_adapt error -time_adapt_max_step 0.01 -time_end {end}"
-        series = run_petves(tmp_path / f"{end}", scene).series
-        dt = series["dt"]
-        assert series["time"][-1] == pytest.approx(end, abs=1e-14)
-        assert dt.max() <= 0.01 * (1 + 1e-12) and dt.max() > 0.005, "steps are -time_step times powers of sqrt(2)"
-        assert dt[-1] > 0.49 * dt[-3], dt[-4:]
-
-
 FREE = "-domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free"
 
 

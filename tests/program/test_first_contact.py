@@ -147,12 +147,6 @@ def test_file_beside_an_options_file(here):
         assert f"-vesicle_file {file}\n" in Path(folder, "resolved.opts").read_text()
 
 
-def test_tool_takes_options_of_one_dash(here):
-    """As runs have them: the answer is of the folder, not of the option."""
-    done = mpirun([PETVES, "plot", "nowhere", "-width", "3.4"], 1)
-    assert done.returncode == 1 and "nowhere: no such folder" in done.stderr
-
-
 def test_tools_are_python_s(here):
     """petves plot and the others start the package, whose commands are these and no others."""
     source = (ROOT / "src" / "app" / "program.c").read_text()
@@ -164,8 +158,9 @@ def test_tools_are_python_s(here):
     assert re.search(r"\{([\w,]+)\}", top)[1].split(",") == ["run", *tools]
 
 
-def test_a_tool_needs_no_python_path(here):
-    done = mpirun([PETVES, "plot", "nowhere"], 1, PYTHONPATH="")
+def test_a_tool_needs_no_python_path_and_takes_options_of_one_dash(here):
+    """As runs have them: the answer is of the folder, not of the option."""
+    done = mpirun([PETVES, "plot", "nowhere", "-width", "3.4"], 1, PYTHONPATH="")
     line = "petves: error: nowhere: no such folder; give the -output_dir of a run\n"
     assert done.returncode == 1 and done.stderr == line
 

@@ -1,11 +1,7 @@
 """petves numbers: options from SI numbers; petves scenes and run NAME: scenes that come with petves."""
 
 import json
-import os
 import re
-import shutil
-import subprocess
-import sys
 
 import pytest
 from harness import ROOT, read_series, run_petves, run_tool
@@ -59,15 +55,3 @@ def test_scenes_run_by_name(tmp_path):
     assert scene_file("shear") == str(ROOT / "runs" / "shear.opts") and scene_file("-help") == "-help"
     assert scene_file(str(tmp_path / "shear")) == str(tmp_path / "shear")
     assert "No such file" in run_tool("run", "sheer", folder=tmp_path).stderr
-
-
-def test_scenes_of_an_installation_are_found(tmp_path):
-    site = tmp_path / "lib" / "python3" / "dist-packages"
-    shutil.copytree(ROOT / "python" / "petves", site / "petves", ignore=shutil.ignore_patterns("*.so"))
-    shutil.copytree(ROOT / "runs", tmp_path / "share" / "petves" / "runs")
-    done = run_tool("scenes", folder=tmp_path, PYTHONPATH=str(site))
-    assert "stirring" in done.stdout, done.stderr
-    code = "from petves.program import scene_file; print(scene_file('stirring'))"
-    environment = {**os.environ, "PYTHONPATH": str(site)}
-    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
-    assert done.stdout.strip() == str(tmp_path / "share" / "petves" / "runs" / "stirring.opts")

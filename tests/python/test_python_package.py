@@ -132,6 +132,12 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         assert (site / "petves" / "py.typed").is_file() and (site / "petves" / "__init__.pyi").is_file()
         done = python(["-c", RUN], HOME=str(tmp_path))
         assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(prefix / "lib" / "libpetves.so")]
+        code = "from petves.program import scene_file; print(scene_file('stirring'))"
+        scenes = (
+            python(["-m", "petves", "scenes"], HOME=str(tmp_path)).stdout
+            + python(["-c", code], HOME=str(tmp_path)).stdout
+        )
+        assert "\nstirring " in scenes and scenes.endswith(f"\n{prefix}/share/petves/runs/stirring.opts\n")
         # the tools find bin/petves under the prefix
         python(["-m", "petves", "sweep", str(prefix / "s"), "--vary", "time_end", "0"], HOME=str(tmp_path))
         environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}

@@ -19,6 +19,9 @@ ALONE = RANK == RANKS - 1  # the rank that does otherwise
 SCENE = dict(domain_cells=(32, 32), vesicle_semi_axes=(0.35, 0.5), time_step=0.01, time_end=0.08, output_dir=sys.argv[1])
 def tell(*words):
     sys.stdout.write(" ".join(map(str, (RANK, *words))) + chr(10))
+def stumble(sim):
+    if ALONE and sim.steps == 3:
+        raise ValueError("mine")
 """
 
 
@@ -48,9 +51,6 @@ with petves.Simulation(**SCENE) as sim:
     def test_a_callback_that_raises_ends_all_ranks(tmp_path):
         """The exception where it was raised, petves.Error of one line elsewhere; the state of the last step is on disk."""
         body = """
-def stumble(sim):
-    if ALONE and sim.steps == 3:
-        raise ValueError("mine")
 with petves.Simulation(**SCENE) as sim:
     try:
         sim.run(callback=stumble)
@@ -63,9 +63,6 @@ with petves.Simulation(**SCENE) as sim:
 
     def test_an_exception_that_nobody_catches_ends_the_program(tmp_path):
         body = """
-def stumble(sim):
-    if ALONE and sim.steps == 3:
-        raise ValueError("mine")
 with petves.Simulation(**SCENE) as sim:
     sim.run(callback=stumble)
 """
