@@ -7,106 +7,101 @@
 #define SMALL 1e-12
 #define NONE PETSC_MAX_REAL
 
-/* An attempt at a level, of a whole step of it or of a part; sizes are over the base, speeds times it. */
+/* An attempt at a level and what is made of it; sizes are over the base, speeds times it. What is zero is as usual: a
+   whole step, none before it, an error of SMALL, edges of ratio 1. */
 typedef struct {
   const char *name;
   PetscInt level;
-  PetscReal part;   /* of the level's step that was tried: another than 1 before a time of output */
-  PetscReal before; /* error of the attempt before in the same step, NONE without */
-  PetscReal error, speed, ratio;
-  PetscBool unsolved, first;
   StepVerdict verdict;
-  PetscInt next;  /* level after */
-  PetscInt order; /* 3: the error goes like dt^3, and steps grow by a level at most; 0: order 2 */
-  PetscReal loss; /* of a film, over what it may lose */
+  PetscInt next;    /* level after */
+  PetscReal part;   /* of the level's step that was tried: another than 1 before a time of output */
+  PetscReal before; /* error of the attempt before in the same step */
+  PetscReal error, speed, ratio;
+  PetscBool unsolved, first, exact; /* exact: no error */
+  PetscInt order;                   /* 3: the error goes like dt^3, and steps grow by a level at most; 0: order 2 */
+  PetscReal loss;                   /* of a film, over what it may lose */
 } Row;
 
-/* clang-format off */
 static const Row rows[] = {
-  /* accepted: 0.9 sqrt(TOL/error) of the step, at most two levels up, as many down as that says */
-  {"a tiny error grows by a factor of 2 only", 0, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 2},
-  {"the same from a deep level", -20, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = -18},
-  {"an error of zero", 0, 1, NONE, 0, 0, 1, .verdict = STEP_ACCEPT, .next = 2},
-  {"a quarter of the tolerance grows by a level", 0, 1, NONE, 0.25 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 1},
-  {"half of the tolerance keeps its size", 0, 1, NONE, 0.5 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
-  {"just inside the tolerance is accepted and then smaller", 0, 1, NONE, 0.95 * TOL, 0, 1,
-   .verdict = STEP_ACCEPT, .next = -1},
-  {"an error equal to the tolerance is accepted", 0, 1, NONE, TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -1},
-  {"no growth above the largest level", 40, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 40},
-  {"nor beyond it by half a growth", 39, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 40},
-  {"less than half a step says nothing of a larger one", 0, 0.49, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
-  {"nor of a smaller one", 0, 0.49, NONE, 0.95 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
-  {"half a step lets steps grow", 0, 0.51, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = 2},
-  {"or stay as they are", 0, 0.71, NONE, 0.25 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
-  {"or shrink", 0, 0.71, NONE, 0.5 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -1},
-  {"a step that was stretched keeps its level", 0, 1.1, NONE, 0.9 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = 0},
-  {"growth no further than markers may move", 0, 1, NONE, SMALL, 0.05, 1, .verdict = STEP_ACCEPT, .next = 1},
-  {"or smaller when they nearly moved too far", 0, 1, NONE, SMALL, 0.095, 1, .verdict = STEP_ACCEPT, .next = -1},
-  {"edges of ratio 2 are even enough", 0, 1, NONE, SMALL, 0, 2, .verdict = STEP_ACCEPT, .next = 2},
-  /* above the tolerance: smaller, by a level at least */
-  {"just above the tolerance", 0, 1, NONE, 1.001 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -1},
-  {"twice the tolerance", 0, 1, NONE, 2 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -2},
-  {"a hundred times the tolerance", 0, 1, NONE, 100 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -7},
-  {"a part of a step with a large error", 0, 0.5, NONE, 4 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -5},
-  {"an error that is not a number: a quarter", 0, 1, NONE, NAN, 0, 1, .verdict = STEP_REPEAT, .next = -4},
-  {"not a number after a known error", 0, 1, 2 * TOL, NAN, 0, 1, .verdict = STEP_REPEAT, .next = -4},
-  {"an error that asks for less than the least level", 0, 1, NONE, 1e30, 0, 1, .verdict = STEP_GIVE_UP, .next = -114},
-  {"an infinite error: a quarter", 0, 1, NONE, INFINITY, 0, 1, .verdict = STEP_REPEAT, .next = -4},
-  {"an infinite error after a known one", 0, 1, 2 * TOL, INFINITY, 0, 1, .verdict = STEP_REPEAT, .next = -4},
-  {"a large error after an infinite one", 0, 1, INFINITY, 100 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -7},
-  /* not solved: half the step, whatever the rest says */
-  {"not solved", 0, 1, NONE, NAN, NAN, NAN, PETSC_TRUE, .verdict = STEP_REPEAT, .next = -2},
-  {"not solved, with numbers that would do", 6, 1, NONE, SMALL, 0, 1, PETSC_TRUE, .verdict = STEP_REPEAT, .next = 4},
-  {"a part of a step not solved: half of the part", 0, 0.3, NONE, NAN, NAN, NAN, PETSC_TRUE,
-   .verdict = STEP_REPEAT, .next = -6},
-  {"a first step not solved", -10, 1, NONE, 0, 0, 1, PETSC_TRUE, PETSC_TRUE, STEP_REPEAT, -12},
-  {"not solved at the last levels", -78, 1, NONE, 0, 0, 1, PETSC_TRUE, .verdict = STEP_REPEAT, .next = -80},
-  {"not solved below them", -79, 1, NONE, 0, 0, 1, PETSC_TRUE, .verdict = STEP_GIVE_UP, .next = -81},
-  /* too far: 0.9 of the step that moves as far as allowed */
-  {"twice too far", 0, 1, NONE, SMALL, 0.2, 1, .verdict = STEP_REPEAT, .next = -3},
-  {"just too far", 0, 1, NONE, SMALL, 0.1001, 1, .verdict = STEP_REPEAT, .next = -1},
-  {"too far and too large an error: the smaller step", 0, 1, NONE, 100 * TOL, 0.2, 1,
-   .verdict = STEP_REPEAT, .next = -7},
-  {"too far, from a large level", 4, 1, NONE, SMALL, 0.2, 1, .verdict = STEP_REPEAT, .next = -3},
-  /* uneven edges: a quarter */
-  {"uneven edges", 0, 1, NONE, SMALL, 0, 2.1, .verdict = STEP_REPEAT, .next = -4},
-  {"an edge ratio that is not a number", 0, 1, NONE, SMALL, 0, NAN, .verdict = STEP_REPEAT, .next = -4},
-  {"uneven edges, large error", 0, 1, NONE, 1e4 * TOL, 0, 3, .verdict = STEP_REPEAT, .next = -4},
-  /* a first step's error is its whole movement and does not count */
-  {"a first step, whatever its error", -10, 1, NONE, 1e6 * TOL, 0, 1, .first = PETSC_TRUE,
-   .verdict = STEP_ACCEPT, .next = -10},
-  {"a first step does not grow", -10, 1, NONE, SMALL, 0, 1, .first = PETSC_TRUE, .verdict = STEP_ACCEPT, .next = -10},
-  {"a first step to where nothing is finite", -10, 1, NONE, NAN, 0, 1, .first = PETSC_TRUE,
-   .verdict = STEP_REPEAT, .next = -14},
-  {"a first step too far", 0, 1, NONE, 1e6 * TOL, 0.2, 1, .first = PETSC_TRUE, .verdict = STEP_REPEAT, .next = -3},
-  {"a first step with uneven edges", 0, 1, NONE, SMALL, 0, 3, .first = PETSC_TRUE, .verdict = STEP_REPEAT, .next = -4},
-  /* an error that a smaller step does not lower is not the step's */
-  {"an error hardly lowered is accepted, without growth", -2, 1, 2 * TOL, 1.9 * TOL, 0, 1,
-   .verdict = STEP_ACCEPT, .next = -2},
-  {"a larger error than before too", -2, 1, 2 * TOL, 5 * TOL, 0, 1, .verdict = STEP_ACCEPT, .next = -2},
-  {"an error lowered by more than a tenth repeats", 0, 1, 2 * TOL, 1.7 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -2},
-  {"not lowered, but too far", 0, 1, 2 * TOL, 1.9 * TOL, 0.2, 1, .verdict = STEP_REPEAT, .next = -3},
-  {"not lowered, but uneven", 0, 1, 2 * TOL, 1.9 * TOL, 0, 3, .verdict = STEP_REPEAT, .next = -4},
-  /* nothing smaller is left */
-  {"too large an error at the least level", -80, 1, NONE, 1.001 * TOL, 0, 1, .verdict = STEP_GIVE_UP, .next = -81},
-  {"too large an error one above", -79, 1, NONE, 1.001 * TOL, 0, 1, .verdict = STEP_REPEAT, .next = -80},
-  {"uneven edges near the least level", -77, 1, NONE, SMALL, 0, 3, .verdict = STEP_GIVE_UP, .next = -81},
-  {"a good step at the least level", -80, 1, NONE, SMALL, 0, 1, .verdict = STEP_ACCEPT, .next = -78},
-  /* a film's loss: above 1 a smaller step, below it growth no further than it bears */
-  {"a film's loss of 0.3", 0, 1, NONE, SMALL, 0, 1, .loss = 0.3, .verdict = STEP_ACCEPT, .next = 2},
-  {"a film's loss of 0.6", 0, 1, NONE, SMALL, 0, 1, .loss = 0.6, .verdict = STEP_ACCEPT, .next = 1},
-  {"a film's loss of 0.95", 0, 1, NONE, SMALL, 0, 1, .loss = 0.95, .verdict = STEP_ACCEPT, .next = -1},
-  {"a film's loss of 1", 0, 1, NONE, SMALL, 0, 1, .loss = 1, .verdict = STEP_ACCEPT, .next = -1},
-  {"a film's loss of 1.0001", 0, 1, NONE, SMALL, 0, 1, .loss = 1.0001, .verdict = STEP_REPEAT, .next = -1},
-  {"a film's loss of 1.5", 0, 1, NONE, SMALL, 0, 1, .loss = 1.5, .verdict = STEP_REPEAT, .next = -2},
-  {"a film's loss of 2", 0, 1, NONE, SMALL, 0, 1, .loss = 2, .verdict = STEP_REPEAT, .next = -3},
-  {"order 3", 0, 1, NONE, SMALL, 0, 1, .order = 3, .verdict = STEP_ACCEPT, .next = 1},
-  {"order 3, a quarter", 0, 1, NONE, 0.25 * TOL, 0, 1, .order = 3, .verdict = STEP_ACCEPT, .next = 1},
-  {"order 3, half", 0, 1, NONE, 0.5 * TOL, 0, 1, .order = 3, .verdict = STEP_ACCEPT, .next = 0},
-  {"order 3, just inside", 0, 1, NONE, 0.95 * TOL, 0, 1, .order = 3, .verdict = STEP_ACCEPT, .next = -1},
-  {"order 3, above", 0, 1, NONE, 1.5 * TOL, 0, 1, .order = 3, .verdict = STEP_REPEAT, .next = -1},
-  {"order 3, eight times", 0, 1, NONE, 8 * TOL, 0, 1, .order = 3, .verdict = STEP_REPEAT, .next = -3}};
-/* clang-format on */
+    /* accepted: 0.9 sqrt(TOL/error) of the step, at most two levels up, as many down as that says */
+    {"a tiny error grows by a factor of 2 only", 0, STEP_ACCEPT, 2},
+    {"the same from a deep level", -20, STEP_ACCEPT, -18},
+    {"an error of zero", 0, STEP_ACCEPT, 2, .exact = PETSC_TRUE},
+    {"a quarter of the tolerance grows by a level", 0, STEP_ACCEPT, 1, .error = 0.25 * TOL},
+    {"half of the tolerance keeps its size", 0, STEP_ACCEPT, 0, .error = 0.5 * TOL},
+    {"just inside the tolerance is accepted and then smaller", 0, STEP_ACCEPT, -1, .error = 0.95 * TOL},
+    {"an error equal to the tolerance is accepted", 0, STEP_ACCEPT, -1, .error = TOL},
+    {"no growth above the largest level", 40, STEP_ACCEPT, 40},
+    {"nor beyond it by half a growth", 39, STEP_ACCEPT, 40},
+    {"less than half a step says nothing of a larger one", 0, STEP_ACCEPT, 0, .part = 0.49},
+    {"nor of a smaller one", 0, STEP_ACCEPT, 0, .part = 0.49, .error = 0.95 * TOL},
+    {"half a step lets steps grow", 0, STEP_ACCEPT, 2, .part = 0.51},
+    {"or stay as they are", 0, STEP_ACCEPT, 0, .part = 0.71, .error = 0.25 * TOL},
+    {"or shrink", 0, STEP_ACCEPT, -1, .part = 0.71, .error = 0.5 * TOL},
+    {"a step that was stretched keeps its level", 0, STEP_ACCEPT, 0, .part = 1.1, .error = 0.9 * TOL},
+    {"growth no further than markers may move", 0, STEP_ACCEPT, 1, .speed = 0.05},
+    {"or smaller when they nearly moved too far", 0, STEP_ACCEPT, -1, .speed = 0.095},
+    {"edges of ratio 2 are even enough", 0, STEP_ACCEPT, 2, .ratio = 2},
+    /* above the tolerance: smaller, by a level at least */
+    {"just above the tolerance", 0, STEP_REPEAT, -1, .error = 1.001 * TOL},
+    {"twice the tolerance", 0, STEP_REPEAT, -2, .error = 2 * TOL},
+    {"a hundred times the tolerance", 0, STEP_REPEAT, -7, .error = 100 * TOL},
+    {"a part of a step with a large error", 0, STEP_REPEAT, -5, .part = 0.5, .error = 4 * TOL},
+    {"an error that is not a number: a quarter", 0, STEP_REPEAT, -4, .error = NAN},
+    {"not a number after a known error", 0, STEP_REPEAT, -4, .before = 2 * TOL, .error = NAN},
+    {"an error that asks for less than the least level", 0, STEP_GIVE_UP, -114, .error = 1e30},
+    {"an infinite error: a quarter", 0, STEP_REPEAT, -4, .error = INFINITY},
+    {"an infinite error after a known one", 0, STEP_REPEAT, -4, .before = 2 * TOL, .error = INFINITY},
+    {"a large error after an infinite one", 0, STEP_REPEAT, -7, .before = INFINITY, .error = 100 * TOL},
+    /* not solved: half the step, whatever the rest says */
+    {"not solved", 0, STEP_REPEAT, -2, .error = NAN, .speed = NAN, .ratio = NAN, .unsolved = PETSC_TRUE},
+    {"not solved, with numbers that would do", 6, STEP_REPEAT, 4, .unsolved = PETSC_TRUE},
+    {"a part of a step not solved: half of the part", 0, STEP_REPEAT, -6, .part = 0.3, .error = NAN, .speed = NAN,
+     .ratio = NAN, .unsolved = PETSC_TRUE},
+    {"a first step not solved", -10, STEP_REPEAT, -12, .exact = PETSC_TRUE, .unsolved = PETSC_TRUE,
+     .first = PETSC_TRUE},
+    {"not solved at the last levels", -78, STEP_REPEAT, -80, .exact = PETSC_TRUE, .unsolved = PETSC_TRUE},
+    {"not solved below them", -79, STEP_GIVE_UP, -81, .exact = PETSC_TRUE, .unsolved = PETSC_TRUE},
+    /* too far: 0.9 of the step that moves as far as allowed */
+    {"twice too far", 0, STEP_REPEAT, -3, .speed = 0.2},
+    {"just too far", 0, STEP_REPEAT, -1, .speed = 0.1001},
+    {"too far and too large an error: the smaller step", 0, STEP_REPEAT, -7, .error = 100 * TOL, .speed = 0.2},
+    {"too far, from a large level", 4, STEP_REPEAT, -3, .speed = 0.2},
+    /* uneven edges: a quarter */
+    {"uneven edges", 0, STEP_REPEAT, -4, .ratio = 2.1},
+    {"an edge ratio that is not a number", 0, STEP_REPEAT, -4, .ratio = NAN},
+    {"uneven edges, large error", 0, STEP_REPEAT, -4, .error = 1e4 * TOL, .ratio = 3},
+    /* a first step's error is its whole movement and does not count */
+    {"a first step, whatever its error", -10, STEP_ACCEPT, -10, .error = 1e6 * TOL, .first = PETSC_TRUE},
+    {"a first step does not grow", -10, STEP_ACCEPT, -10, .first = PETSC_TRUE},
+    {"a first step to where nothing is finite", -10, STEP_REPEAT, -14, .error = NAN, .first = PETSC_TRUE},
+    {"a first step too far", 0, STEP_REPEAT, -3, .error = 1e6 * TOL, .speed = 0.2, .first = PETSC_TRUE},
+    {"a first step with uneven edges", 0, STEP_REPEAT, -4, .ratio = 3, .first = PETSC_TRUE},
+    /* an error that a smaller step does not lower is not the step's */
+    {"an error hardly lowered is accepted, without growth", -2, STEP_ACCEPT, -2, .before = 2 * TOL, .error = 1.9 * TOL},
+    {"a larger error than before too", -2, STEP_ACCEPT, -2, .before = 2 * TOL, .error = 5 * TOL},
+    {"an error lowered by more than a tenth repeats", 0, STEP_REPEAT, -2, .before = 2 * TOL, .error = 1.7 * TOL},
+    {"not lowered, but too far", 0, STEP_REPEAT, -3, .before = 2 * TOL, .error = 1.9 * TOL, .speed = 0.2},
+    {"not lowered, but uneven", 0, STEP_REPEAT, -4, .before = 2 * TOL, .error = 1.9 * TOL, .ratio = 3},
+    /* nothing smaller is left */
+    {"too large an error at the least level", -80, STEP_GIVE_UP, -81, .error = 1.001 * TOL},
+    {"too large an error one above", -79, STEP_REPEAT, -80, .error = 1.001 * TOL},
+    {"uneven edges near the least level", -77, STEP_GIVE_UP, -81, .ratio = 3},
+    {"a good step at the least level", -80, STEP_ACCEPT, -78},
+    /* a film's loss: above 1 a smaller step, below it growth no further than it bears */
+    {"a film's loss of 0.3", 0, STEP_ACCEPT, 2, .loss = 0.3},
+    {"a film's loss of 0.6", 0, STEP_ACCEPT, 1, .loss = 0.6},
+    {"a film's loss of 0.95", 0, STEP_ACCEPT, -1, .loss = 0.95},
+    {"a film's loss of 1", 0, STEP_ACCEPT, -1, .loss = 1},
+    {"a film's loss of 1.0001", 0, STEP_REPEAT, -1, .loss = 1.0001},
+    {"a film's loss of 1.5", 0, STEP_REPEAT, -2, .loss = 1.5},
+    {"a film's loss of 2", 0, STEP_REPEAT, -3, .loss = 2},
+    {"order 3", 0, STEP_ACCEPT, 1, .order = 3},
+    {"order 3, a quarter", 0, STEP_ACCEPT, 1, .error = 0.25 * TOL, .order = 3},
+    {"order 3, half", 0, STEP_ACCEPT, 0, .error = 0.5 * TOL, .order = 3},
+    {"order 3, just inside", 0, STEP_ACCEPT, -1, .error = 0.95 * TOL, .order = 3},
+    {"order 3, above", 0, STEP_REPEAT, -1, .error = 1.5 * TOL, .order = 3},
+    {"order 3, eight times", 0, STEP_REPEAT, -3, .error = 8 * TOL, .order = 3}};
 
 static StepPolicy Policy(PetscReal base) {
   return (StepPolicy){.adaptive = PETSC_TRUE, .base = base, .tolerance = TOL, .max_move = MOVE};
@@ -120,22 +115,24 @@ static PetscReal SizeOf(PetscReal base, PetscInt level) {
    its error. */
 static void CheckRow(const Row *r, PetscReal base) {
   const StepPolicy policy = Policy(base);
-  const StepTrial trial = {.solved = r->unsolved ? PETSC_FALSE : PETSC_TRUE,
+  const PetscReal before = r->before != 0 ? r->before : NONE, part = r->part != 0 ? r->part : 1;
+  const StepTrial trial = {.solved = !r->unsolved,
                            .first = r->first,
                            .order = r->order,
                            .loss = r->loss,
-                           .dt = r->part * SizeOf(base, r->level),
-                           .error = r->error,
+                           .dt = part * SizeOf(base, r->level),
+                           .error = r->exact        ? 0
+                                    : r->error != 0 ? r->error
+                                                    : SMALL,
                            .speed = r->speed / base,
-                           .ratio = r->ratio};
+                           .ratio = r->ratio != 0 ? r->ratio : 1};
   StepPlan plan[2];
   StepVerdict verdict[2];
   for (int k = 0; k < 2; k++) {
-    plan[k] = (StepPlan){.level = r->level, .before = r->before};
+    plan[k] = (StepPlan){.level = r->level, .before = before};
     verdict[k] = StepJudge(&policy, &trial, &plan[k]);
   }
-  const PetscBool known = trial.solved && verdict[0] != STEP_ACCEPT ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal left = known ? r->error : r->before;
+  const PetscReal left = trial.solved && verdict[0] != STEP_ACCEPT ? trial.error : before;
   CHECK(verdict[0] == r->verdict && plan[0].level == r->next,
         "base %g, %s: verdict %d, level %d to %d (wanted: %d, %d)", base, r->name, verdict[0], (int)r->level,
         (int)plan[0].level, r->verdict, (int)r->next);
