@@ -40,13 +40,16 @@ def test_odd_grid_runs_on_many_ranks(ranks, cached_run):
     same_columns(one, many, 1e-10, ("wall", "inclination"))  # the long axis lies along y, where the angle jumps by pi
 
 
+SEAMS = (
+    "-domain_cells 64,64 -domain_bc_x periodic -domain_bc_y periodic -vesicle_angle 20 -time_step 0.01 -time_end 0.1"
+)
+
+
 @pytest.mark.parametrize("center", ["1,0", "0,0.96875", "1,-0.96875"])
 def test_seams_do_not_matter(center, cached_run):
     """A periodic box: the vesicle moved by whole cells, across one seam or two, does the same."""
-    options = "-domain_cells 64,64 -domain_bc_x periodic -domain_bc_y periodic -vesicle_angle 20 -time_step 0.01"
-    options += f" {TIGHT}"
-    middle = cached_run(f"{options} -time_end 0.1 -vesicle_center 0,0", 1).series
-    moved = cached_run(f"{options} -time_end 0.1 -vesicle_center {center}", 2).series
+    middle = cached_run(f"{SEAMS} {TIGHT}", 1).series
+    moved = cached_run(f"{SEAMS} {TIGHT} -vesicle_center {center}", 2).series
     for i, name in enumerate(("center_x", "center_y")):
         np.testing.assert_allclose(moved[name], middle[name] + float(center.split(",")[i]), rtol=0, atol=1e-10)
     same_columns(middle, moved, 1e-10, ("wall", "center_x", "center_y"))
@@ -130,9 +133,11 @@ def test_energy_falls(step, end, cached_run):
     assert change[1] < (1.1e-3 if step == "0.015625" else 0)
 
 
-def test_solves_are_counted_with_bending(cached_run):
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("scene", [*SCENES.values(), SEAMS], ids=[*SCENES, "periodic"])
+def test_solves_are_counted_with_bending(scene, ranks, cached_run):
     """2 + 2 (bending, its solve applied) + 2 an iteration; 1 + 1 (tension applied) + 1 an iteration of tension."""
-    series = cached_run(f"{SCENES['shear']} {TIGHT}", 1).series
+    series = cached_run(f"{scene} {TIGHT}", ranks).series
     assert series["bending_its"][1:].min() > 0 and series["tension_its"][1:].min() > 0
     np.testing.assert_array_equal(series["nsolve"][1:], (6 + 2 * series["bending_its"] + series["tension_its"])[1:])
 
