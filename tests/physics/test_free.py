@@ -1,12 +1,11 @@
 """Unbounded fluid: tank-treading of the boundary integral, any number of ranks, a restart, and the fields of the window."""
 
-import h5py
 import numpy as np
 import pytest
 from boundary_integral import derivative
 from harness import ROOT, run_petves
 from petves.curves import trigonometric
-from restarts import agree
+from restarts import agree, frames
 
 RATE = 0.326116
 FREE = "-domain_bc_x free -domain_bc_y free -scheme_order 2 -output_overwrite"
@@ -56,11 +55,10 @@ def layer(X, F, z):
 def test_fields_are_those_of_the_layer(tmp_path):
     """Velocity and pressure at cells on both sides, some a hundredth of a cell from the membrane: against a sum of 40000
     points."""
-    tank_treading(tmp_path / "out", "-domain_cells 32,32 -time_step .1 -time_end .3")
-    with h5py.File(tmp_path / "out" / "run.h5") as file:
-        u, v, p = (file[f"fluid/{name}"][-1] for name in "uvp")
-        X = file["vesicle/markers"][-1] @ [1, 1j]
-        tension = file["vesicle/tension"][-1]
+    run = tank_treading(tmp_path / "out", "-domain_cells 32,32 -time_step .1 -time_end .3")
+    last = {name: values[-1] for name, values in frames(run.folder).items()}
+    u, v, p = (last[f"fluid/{name}"] for name in "uvp")
+    X, tension = last["vesicle/markers"] @ [1, 1j], last["vesicle/tension"]
     n, D = len(X), derivative(len(X))
     ds = np.abs(D @ X).mean()
     F = D @ (D @ X / ds * tension) - 0.01 * ds**-3 * D @ D @ D @ D @ X

@@ -1,7 +1,6 @@
 """Gravity: settling of the boundary integral, the drag of a rigid circle, the energy law, boxes without walls."""
 
 
-import h5py
 import numpy as np
 import pytest
 from harness import REFERENCES, ROOT, Run, run_petves
@@ -118,9 +117,8 @@ def test_the_velocity_in_cells_near_a_heavy_vesicle(tmp_path):
         options += f" -vesicle_semi_axes {0.5 * length},{0.8 * length} -vesicle_bending {0.1 * length**3}"
         options += f" -fluid_viscosity {length} -fluid_inertia none -fluid_gravity 0,{-10 / length} -vesicle_density_difference 1"
         options += f" -time_step {0.01 * length} -time_end {0.01 * length}"
-        run_petves(tmp_path / f"{cells}_{length}", options)
-        with h5py.File(tmp_path / f"{cells}_{length}" / "run.h5") as file:
-            fields.append(np.array([file["fluid"][name][-1] for name in "uv"]))
+        run = run_petves(tmp_path / f"{cells}_{length}", options)
+        fields.append(np.array([run.saved(f"fluid/{name}", "run.h5")[-1] for name in "uv"]))
     coarse, fine, scaled = fields
     mean = sum(fine[:, i::2, j::2] for i in (0, 1) for j in (0, 1)) / 4
     assert np.abs(coarse - mean).max() < 0.05 * np.abs(coarse).max()

@@ -3,7 +3,6 @@ model, its Reynolds number and its warning, the CFL number."""
 
 import re
 
-import h5py
 import numpy as np
 import pytest
 from harness import run_petves
@@ -90,10 +89,7 @@ def test_steps_far_below_the_lag_only_ever_lose_energy(tmp_path):
 
 def relative_difference(one, two) -> tuple[float, float]:
     """Largest difference of markers about their mean over R0, and of their velocity about the mean, relative."""
-    states = []
-    for run in (one, two):
-        with h5py.File(run.folder / "run.h5") as file:
-            states.append([file["vesicle/markers"][-1], file["vesicle/velocity"][-1]])
+    states = [[run.saved(f"vesicle/{name}", "run.h5")[-1] for name in ("markers", "velocity")] for run in (one, two)]
     (X, U), (Y, V) = [[a - a.mean(axis=0) for a in state] for state in states]
     return np.abs(X - Y).max() / 0.366, np.abs(U - V).max() / np.abs(U).max()
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from harness import attribute, run_petves, start, wait_for_rows
-from restarts import agree, same_columns
+from restarts import agree, frames, same_columns
 
 import petves
 from petves.run import Run as Files
@@ -63,8 +63,7 @@ MANY += " -vesicle_reduced_area .8 -time_step .01 -output_every .02 -checkpoint_
 
 def rows(folder):
     """The datasets of vesicles.h5."""
-    with h5py.File(folder / "vesicles.h5") as file:
-        return {name: file[name][:] for name in file}
+    return frames(folder, "vesicles.h5")
 
 
 def same_rows(ours, theirs, first=0):

@@ -5,7 +5,6 @@ import csv
 import re
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 from harness import PAPER, PETVES, PROGRAMS, ROOT, mpirun, run_petves, without_mpirun
@@ -285,5 +284,4 @@ def test_vesicle_carried_into_a_wall_stops_the_run(tmp_path):
     step, time = re.search(r"after step (\d+), time ([\d.]+);", summary["reason"]).groups()
     assert int(step) == series["step"][-1] + 1 and float(time) == pytest.approx(series["time"][-1] + 0.02, rel=1e-5)
     assert 2 <= series["step"][-1] < 100
-    with h5py.File(run.folder / "checkpoint.h5") as file:
-        assert 3 <= (1 - file["vesicle/markers"][0, :, 0].max()) / (2 / 48) < 4, "the state before is the good one"
+    assert 3 <= (1 - run.saved("vesicle/markers")[0, :, 0].max()) / (2 / 48) < 4, "the state before is the good one"

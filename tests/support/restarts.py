@@ -31,10 +31,10 @@ def without_wall(folder: Path) -> list[str]:
     return [",".join(row[:wall] + row[wall + 1 :]) for row in rows]
 
 
-def frames(folder: Path) -> dict[str, np.ndarray]:
-    """Every dataset of run.h5."""
+def frames(folder: Path, name: str = "run.h5") -> dict[str, np.ndarray]:
+    """Every dataset of run.h5, or of another file."""
     found = {}
-    with h5py.File(folder / "run.h5") as file:
+    with h5py.File(folder / name) as file:
         file.visititems(lambda name, item: found.update({name: item[:]}) if isinstance(item, h5py.Dataset) else None)
     return found
 
