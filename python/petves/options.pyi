@@ -80,7 +80,7 @@ class Options(TypedDict, total=False):
     delta_type: Literal['ib6', 'cbs54'] | None  # kernel between grid and markers; split, penalty: ib6
     scheme_type: Literal['split', 'penalty', 'coupled'] | None  # time-stepping scheme: the paper's, stiff springs, unsplit
     scheme_order: Value  # order in time: backward Euler, BDF2, or BDF3 wherever it predicts better; split and penalty are of order 1
-    scheme_auto: Value  # relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off
+    scheme_auto: Value  # relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; three dimensions: degree and steps; 0 off
     penalty_stiffness: Value  # penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears
     scheme_length_target: Literal['true', 'false'] | None  # coupled: each step aims at edges of their first length
     coupling_near_field: Literal['exact', 'none'] | None  # coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not

@@ -242,14 +242,23 @@ static const Setting settings[AUTO_SETTINGS] = {
   {"-domain_bc_x", AUTO_FIRST, .suggest = SceneSuggestBoundaryX},
   {"-domain_bc_y", AUTO_FIRST, .suggest = SceneSuggestBoundaryY},
   {"-domain_box", AUTO_DOMAIN, .suggest = SceneSuggestBox},
-  {"-domain_cells", AUTO_DOMAIN, .suggest = SceneSuggestCells}};
+  {"-domain_cells", AUTO_DOMAIN, .suggest = SceneSuggestCells},
+  {"-sphere_degree", AUTO_SPACE, .suggest = SceneSuggestDegree},
+  {"-scheme_order", AUTO_SPACE, "", "what was calibrated"},
+  {"-bending_newton", AUTO_SPACE, "", "a second Newton step gains what smaller steps do"},
+  {"-time_adapt", AUTO_SPACE, "error", "finds the step of any scene"},
+  {"-time_step", AUTO_SPACE, .suggest = SceneSuggestSpaceStep},
+  {"-time_adapt_tol", AUTO_SPACE, .suggest = SceneSuggestSpaceTolerance},
+  {"-time_adapt_max_step", AUTO_SPACE, .suggest = SceneSuggestSpaceMost}};
 
 PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
   const SceneRule rules[] = {
     {s->scheme.wanted < 1e-4 || s->scheme.wanted > 0.1,
      "-scheme_auto {-scheme_auto}: outside of what was measured; allowed: 0, or 1e-4 to 0.1"},
     {SceneIsProjection(s),
-     "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"}};
+     "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"},
+    {stage == AUTO_SPACE && !SceneSpaceMeasured(s),
+     "-scheme_auto {-scheme_auto}: outside of what was measured with -dim 3; allowed: one spheroid of -vesicle_reduced_volume 0.7 or more, 0.8 below 1e-3, in -flow_type shear, rate nu R0^3/kappa 1 to 100, without viscosity ratio or gravity"}};
   /* clang-format on */
   PetscFunctionBeginUser;
   if (s->scheme.wanted == 0 || (stage == AUTO_STEPS && !s->shape.vesicles)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -322,12 +331,15 @@ static PetscErrorCode AutoReportMarkers(Scene scene) {
 
 PetscErrorCode SceneReport(Scene s) {
   PetscFunctionBeginUser;
-  if (s->scheme.wanted > 0 && s->shape.vesicles) {
-    PetscCall(PetvesSay(s->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/settings.md)\n",
-                        (double)s->scheme.wanted));
-    for (int k = 0; k < AUTO_SETTINGS; k++) PetscCall(AutoReportSetting(s, settings[k].name, s->scheme.reason[k]));
-    PetscCall(AutoReportFilm(s));
-    PetscCall(SceneReportGrid(s));
+  const PetscBool space = s->dim == DIM_SPACE;
+  if (s->scheme.wanted > 0 && (space || s->shape.vesicles)) {
+    PetscCall(PetvesSay(s->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/%s.md)\n",
+                        (double)s->scheme.wanted, space ? "space" : "settings"));
+    for (int k = 0; k < AUTO_SETTINGS; k++)
+      if ((settings[k].stage == AUTO_SPACE) == space)
+        PetscCall(AutoReportSetting(s, settings[k].name, s->scheme.reason[k]));
+    if (!space) PetscCall(AutoReportFilm(s));
+    if (!space) PetscCall(SceneReportGrid(s));
   }
   if (*s->warning) PetscCall(PetvesSay(s->comm, "petves: warning: %s\n", s->warning));
   PetscCall(AutoReportMarkers(s));

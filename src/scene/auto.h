@@ -2,8 +2,9 @@
 #pragma once
 #include "scene/spec.h"
 
-/* When a setting is chosen: before the checks, when lists are checked, or when vesicles are known. */
-typedef enum { AUTO_FIRST, AUTO_DOMAIN, AUTO_STEPS } AutoStage;
+/* When a setting is chosen: before the checks, when lists are checked, or when vesicles are known; all in three
+   dimensions. */
+typedef enum { AUTO_FIRST, AUTO_DOMAIN, AUTO_STEPS, AUTO_SPACE } AutoStage;
 
 /* SceneChooseByError - with -scheme_auto: the settings of a stage that the user does not give, and the reason of each.
    Errors: outside of what was measured, and schemes that have no error control. SceneChooseMarkers - with -scheme_auto,
@@ -21,6 +22,15 @@ PETSC_EXTERN PetscErrorCode SceneSuggestBoundaryX(Draft scene, char value[AUTO_T
 PETSC_EXTERN PetscErrorCode SceneSuggestBoundaryY(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
 PETSC_EXTERN PetscErrorCode SceneSuggestBox(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
 PETSC_EXTERN PetscErrorCode SceneSuggestCells(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
+
+/* Three dimensions (autospace.c). SceneSpaceMeasured - whether degree and steps of such a scene have been measured: one
+   spheroid of reduced volume 0.7 to 1 in shear, chi from 1 to 100; at 0.7 down to 1e-3. Degree, first step, tolerance
+   and largest step, as above. Not collective. */
+PETSC_EXTERN PetscBool SceneSpaceMeasured(Scene scene);
+PETSC_EXTERN PetscErrorCode SceneSuggestDegree(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
+PETSC_EXTERN PetscErrorCode SceneSuggestSpaceStep(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
+PETSC_EXTERN PetscErrorCode SceneSuggestSpaceTolerance(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
+PETSC_EXTERN PetscErrorCode SceneSuggestSpaceMost(Draft scene, char value[AUTO_TEXT], char why[AUTO_TEXT]);
 
 /* The error of a grid depends on the fluid: quasi-steady with the near field's box part, quasi-steady without the box
    part, or with inertia. */

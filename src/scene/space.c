@@ -1,4 +1,5 @@
 #include "scene/space.h"
+#include "scene/auto.h"
 #include "scene/checks.h"
 #include "scene/flow3.h"
 #include "scene/properties.h"
@@ -153,6 +154,8 @@ PetscErrorCode SceneResolveSpace(Draft s) {
                               "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
   }
   PetscCall(SceneResolveAxial(s));
+  PetscCall(SceneChooseByError(s, AUTO_SPACE));
+  PetscCall(OptionsDepend(&s->options, s));
   PetscCall(SceneMakeSurfaces(s, &rows));
   SceneSpaceScales(s, R0, &bending, &relaxation);
   if (s->flow.chi != 0) s->flow.rate = s->flow.chi * bending / (s->fluid.nu * R0[0] * R0[0] * R0[0]);

@@ -15,7 +15,7 @@ typedef enum { STARTUP_EULER, STARTUP_GRADED } StartUp;
 typedef enum { SHAPE_ELLIPSE, SHAPE_BICONCAVE, SHAPE_FILE, SHAPE_NONE } ShapeType;
 typedef enum { OBSTACLE_NONE, OBSTACLE_POSTS, OBSTACLE_COUETTE, OBSTACLE_CONSTRICTION, OBSTACLE_FILE } ObstacleShape;
 typedef enum { OBSTACLE_FACTOR_AUTO, OBSTACLE_FACTOR_DENSE, OBSTACLE_FACTOR_MODES } ObstacleFactor;
-#define AUTO_SETTINGS 14
+#define AUTO_SETTINGS 21
 #define AUTO_TEXT 128 /* characters of a value or of a reason */
 typedef enum { PACKING_RANDOM, PACKING_LATTICE } PackingType;
 

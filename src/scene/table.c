@@ -213,7 +213,7 @@ static const OptionRow table[] = {
   {"-delta_type", OPT_NAME, AT(coupling.kernel), "cbs54", KERNEL_NAMES, "kernel between grid and markers", &need_bodies},
   {"-scheme_type", OPT_NAME, AT(scheme.type), "coupled", "split|penalty|coupled", "time-stepping scheme: the paper's, stiff springs, unsplit", IN_SPACE},
   {"-scheme_order", OPT_INT, AT(scheme.order), "3", "[1,3]", "order in time: backward Euler, BDF2, or BDF3 wherever it predicts better", IN_SPACE},
-  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; 0 off", &need_vesicles, MAY_CHANGE},
+  {"-scheme_auto", OPT_REAL, AT(scheme.wanted), "0", ">=0", "relative error wanted, 1e-4 to 0.1: steps, tolerances, markers, kernel, and the box and the grid that are not given, by what was measured; three dimensions: degree and steps; 0 off", &need_vesicles, MAY_CHANGE, IN_SPACE},
   {"-penalty_stiffness", OPT_REAL, AT(scheme.stiffness), "0", ">=0", "penalty: sigma_0 of the springs sigma = sigma_0 (|X_s| - 1) (length^3/time^2); 0 takes half of what the step bears", &need_penalty},
   {"-scheme_length_target", OPT_BOOL, AT(scheme.length_target), "true", "true|false", "coupled: each step aims at edges of their first length", &need_coupled},
   {"-coupling_near_field", OPT_ENUM, AT(coupling.near_field), "exact", "exact|none", "coupled: correct the markers' velocity for the smoothing by kernel and grid, to the exact single layer; none: do not", &need_bodies},

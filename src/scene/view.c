@@ -158,18 +158,19 @@ PetscErrorCode SceneView(Scene scene, PetscViewer v) {
 }
 
 PetscErrorCode SceneSayModel(Scene s) {
+  const char *steps = s->time.adapt == ADAPT_NONE ? "fixed steps of" : "adaptive steps from";
   char model[SCENE_MODEL], reynolds[64] = "";
   PetscFunctionBeginUser;
   if (s->dim != DIM_PLANE) {
-    PetscCall(PetvesSay(s->comm, "petves: quasi-steady flow %s, %s, degree %" PetscInt_FMT ", fixed steps of %g\n",
+    PetscCall(PetvesSay(s->comm, "petves: quasi-steady flow %s, %s, degree %" PetscInt_FMT ", %s %g\n",
                         s->space.tube.radius > 0 ? "in a tube" : "without bounds",
-                        s->dim == DIM_AXIAL ? "axisymmetric" : "three dimensions", s->space.degree,
+                        s->dim == DIM_AXIAL ? "axisymmetric" : "three dimensions", s->space.degree, steps,
                         (double)s->time.dt));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   SceneModel(s, model);
   if (s->reynolds > 0) PetscCall(PetscSNPrintf(reynolds, sizeof(reynolds), ", Re = %.3g", (double)s->reynolds));
-  PetscCall(PetvesSay(s->comm, "petves: %s%s, %s %g\n", model, s->reynolds >= 0 ? reynolds : ", Re not known",
-                      s->time.adapt == ADAPT_NONE ? "fixed steps of" : "adaptive steps from", (double)s->time.dt));
+  PetscCall(PetvesSay(s->comm, "petves: %s%s, %s %g\n", model, s->reynolds >= 0 ? reynolds : ", Re not known", steps,
+                      (double)s->time.dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

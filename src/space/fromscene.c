@@ -1,4 +1,5 @@
 #include "space/fromscene.h"
+#include "scene/auto.h"
 #include "scene/flow3.h"
 
 static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
@@ -70,6 +71,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   Vesicle3Setting *material;
   PetscReal *X;
   PetscFunctionBeginUser;
+  PetscCall(SceneReport(s));
   PetscCall(PetscMalloc2(count, &material, count * 3 * HarmonicsCount(p), &X));
   PetscCall(SceneFirstFields(s, X));
   for (PetscInt v = 0; v < count; v++) {

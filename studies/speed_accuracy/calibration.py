@@ -14,7 +14,7 @@ from studies.common import paper
 from studies.common.curves import radius
 from studies.common.engine import Case, Results, Series
 from studies.common.scenes import tank_treading, words
-from studies.speed_accuracy import unseen
+from studies.speed_accuracy import space, unseen
 
 TOLERANCES = ("1e-1", "3e-2", "1e-2", "3e-3", "1e-3", "3e-4", "1e-4", "3e-5")
 RTOLS = ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7")
@@ -329,6 +329,6 @@ def write(folder: str | Path, quick: bool = False) -> list[Path]:
     folder = Path(folder)
     results = Results(folder / "calibration.json")
     rows = _times(results) + _compressed(results) + _rest(results)
-    rows += _grids(results) + _with_inertia(results) + _walls(results) + _boxes(results)
+    rows += _grids(results) + _with_inertia(results) + _walls(results) + _boxes(results) + space.rows(results)
     shown = [[f"{x:.3e}" if isinstance(x, float) else x for x in row.values()] for row in rows]
     return [write_csv(folder / "calibration.csv", list(rows[0]), shown)]

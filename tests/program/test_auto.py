@@ -288,3 +288,33 @@ def test_film_at_the_start(tmp_path):
     chosen = run_petves(tmp_path / "chosen", scene)
     assert int(settings(chosen.stdout)["-vesicle_markers"][0]) > 55
     assert "TOO THIN" not in chosen.stdout and "grid: none, unbounded fluid: enough\n" in chosen.stdout
+
+
+def measured_in_space(volume: float, degree: int) -> float:
+    """Worst error of a degree at reduced volumes from this one up to the next that has a degree of its own."""
+    group = {0.95: (0.95, 0.99)}.get(volume, (volume,))
+    with CALIBRATION.open() as file:
+        rows = [row for row in csv.DictReader(file) if row["table"] == "degree" and row["value"] == str(degree)]
+    return max(float(row["error"]) for row in rows if any(f"v={v:g} " in row["scene"] for v in group))
+
+
+@pytest.mark.parametrize("wanted", WANTED)
+def test_degree_and_steps_are_what_was_measured(wanted, tmp_path):
+    """In three dimensions: printed errors are the worst of the calibration, and each leaves room for the other."""
+    for volume in (0.95, 0.9, 0.8, 0.7)[: 4 if wanted > 1e-4 else 3]:
+        scene = f"-dim 3 -flow_type shear -flow_chi 10 -vesicle_reduced_volume {volume} -time_end 0 {QUIET}"
+        chosen = settings(run_petves(tmp_path / f"{volume}", f"{scene} -scheme_auto {wanted}").stdout)
+        for name, table in (("-sphere_degree", None), ("-time_adapt_tol", "space_tol_1")):
+            value, why = chosen[name]
+            worst = measured(table, value) if table else measured_in_space(volume, int(value))
+            assert float(re.search(r"leaves? up to (\S+)", why)[1]) == pytest.approx(worst, rel=0.06), (name, volume)
+            assert worst <= wanted / 2, (name, volume)
+
+
+@pytest.mark.parametrize("wanted, volume, angle", [(0.1, 0.95, 0.180015), (1e-2, 0.9, 0.153393), (1e-3, 0.9, 0.153393)])
+def test_treading_in_space_within_the_wanted_error(wanted, volume, angle, tmp_path):
+    """The steady angle of the independent calculation of test_space.py."""
+    scene = f"-dim 3 -flow_type shear -vesicle_bending 0.1 -vesicle_reduced_volume {volume} -time_end 16 {QUIET}"
+    run = run_petves(tmp_path, f"{scene} -scheme_auto {wanted}")
+    print(f"{run.series['inclination'][-1] / np.pi / angle - 1:+.2e} in {len(run.series['step']) - 1} steps")
+    assert run.series["inclination"][-1] / np.pi == pytest.approx(angle, rel=wanted)
