@@ -42,7 +42,7 @@ PetscBool SceneSpaceMeasured(Scene s) {
   SpaceRates(s, &shear, &membrane);
   return v < VOLUMES && measured[MeasuredRow(s)].degree[v] && s->vesicles.count == 1 && s->flow.type == FLOW_SHEAR &&
          shear >= membrane && shear <= 100 * membrane && !SceneHasContrast(s) && !SceneHasGravity(s) &&
-         !*s->vesicles.file && !SceneGiven(s, "-vesicle_half_axes");
+         !*s->vesicles.file && !SceneGiven(s, "-vesicle_half_axes") && s->space.spheroid != SPHEROID_CAPSULE;
 }
 
 PetscErrorCode SceneSuggestDegree(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
