@@ -45,15 +45,16 @@ PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, 
                                              CrossLayer *cross);
 PETSC_EXTERN PetscErrorCode CrossLayerDestroy(CrossLayer *cross);
 
-/* CrossLayerMeasure - the least gap of the surfaces X[own][size]. CrossLayerPlace - the same, and what the surfaces
-   do to one another where none overlap. CrossLayerAdd - U[own][size] += the velocities by forces F[own][size] on
-   the other vesicles. Collective. */
-/* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][size] += its
-   gradient. CrossLayerAddStiffness - G[own][size] += what a change of the surfaces, change[own][size], adds to
-   the gradient. Collective. */
-PETSC_EXTERN PetscErrorCode CrossLayerEnergy(CrossLayer cross, PetscReal *energy);
-PETSC_EXTERN PetscErrorCode CrossLayerAddRepulsion(CrossLayer cross, PetscReal G[]);
-PETSC_EXTERN PetscErrorCode CrossLayerAddStiffness(CrossLayer cross, const PetscReal change[], PetscReal G[]);
+/* CrossLayerMeasure - the least gap of the surfaces X[own][size]. CrossLayerPlace - the same, and what the surfaces do
+   to one another where none overlap. CrossLayerAdd - U[own][size] += the velocities by forces F[own][size] on the other
+   vesicles. Collective. */
 PETSC_EXTERN PetscErrorCode CrossLayerMeasure(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerPlace(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerAdd(CrossLayer cross, const PetscReal F[], PetscReal U[]);
+
+/* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][size] += its
+   gradient. CrossLayerAddStiffness - G[own][size] += what a change of the surfaces, change[own][size], adds to the
+   gradient. Collective. */
+PETSC_EXTERN PetscErrorCode CrossLayerEnergy(CrossLayer cross, PetscReal *energy);
+PETSC_EXTERN PetscErrorCode CrossLayerAddRepulsion(CrossLayer cross, PetscReal G[]);
+PETSC_EXTERN PetscErrorCode CrossLayerAddStiffness(CrossLayer cross, const PetscReal change[], PetscReal G[]);

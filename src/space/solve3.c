@@ -4,57 +4,6 @@
 #define RENEWAL 0.4     /* iterations that new factors cost, over the number of harmonics */
 #define STEP_RATIO 1.45 /* of two steps with the same factors */
 
-/* The extent of all vesicles where their surfaces `at` have been placed. */
-static PetscErrorCode SpaceTubeExtent(Space s, TubeExtent *extent) {
-  *extent = (TubeExtent){.gap = PETSC_MAX_REAL};
-  PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < s->share.own; v++) TubeMeasure(s->tube.tube, s->vesicle[v]->at, extent);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->gap, 1, MPIU_REAL, MPI_MIN, s->share.comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->stretch, 1, MPIU_REAL, MPI_MAX, s->share.comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SpaceMeasureFilm(Space s, const PetscReal X[], PetscReal *film) {
-  TubeExtent extent;
-  PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(SurfacePlace(s->vesicle[v]->at, X + v * s->size, PETSC_FALSE));
-  PetscCall(SpaceTubeExtent(s, &extent));
-  *film = extent.gap;
-  s->tube.spacing = extent.stretch * PETSC_PI / (PetscReal)(s->sphere->p + 1);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
-  const PetscInt each = s->size * TUBE_ROWS;
-  TubeExtent extent;
-  PetscFunctionBeginUser;
-  PetscCall(SpaceTubeExtent(s, &extent));
-  s->tube.film = extent.gap;
-  if (s->tube.film <= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TubePlace(s->tube.tube, s->sphere->p, &extent));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(TubeFactor(s->tube.tube, X + v * s->size, s->tube.wall + v * each));
-    PetscCall(TubeAddMobility(s->size, s->tube.wall + v * each, s->vesicle[v]->M));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* V += what the tube makes of the forces on other vesicles. */
-static PetscErrorCode SpaceAddTube(Space s, const PetscReal F[], PetscReal V[]) {
-  const PetscInt each = s->size * TUBE_ROWS;
-  PetscReal all[TUBE_ROWS] = {0}, others[TUBE_ROWS];
-  PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(TubeRows(s->size, s->tube.wall + v * each, 1, F + v * s->size, all));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, TUBE_ROWS, MPIU_REAL, MPI_SUM, s->share.comm));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(PetscArraycpy(others, all, TUBE_ROWS));
-    PetscCall(TubeRows(s->size, s->tube.wall + v * each, -1, F + v * s->size, others));
-    PetscCall(TubeAddRows(s->size, s->tube.wall + v * each, others, V + v * s->size));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++)
@@ -208,19 +157,6 @@ static PetscErrorCode SpaceRightHandSide(Space s) {
   }
   PetscCall(VecRestoreArrayWrite(s->b, &b));
   PetscCall(PetscFree(y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The thrust of the membranes' forces, which are minus F. */
-static PetscErrorCode SpaceMeasureThrust(Space s) {
-  PetscReal part;
-  PetscFunctionBeginUser;
-  s->tube.thrust = 0;
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(TubeThrust(s->tube.tube, s->vesicle[v]->at, s->work.F + v * s->size, &part));
-    s->tube.thrust -= part;
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->tube.thrust, 1, MPIU_REAL, MPI_SUM, s->share.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

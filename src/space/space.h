@@ -121,7 +121,7 @@ typedef struct {
 } SpaceArray;
 #define SPACE_ARRAYS (3 * BDF_MOST + 2)
 
-/* SpaceGetNumbers, SpaceSetNumbers - of the present state (spacememory.c).(spacememory.c). SpaceArrays - the arrays
+/* SpaceGetNumbers, SpaceSetNumbers - of the present state (spacememory.c). SpaceArrays - the arrays
    that go with the numbers, and how many there are. Not collective. */
 PETSC_EXTERN SpaceNumbers SpaceGetNumbers(Space space);
 PETSC_EXTERN void SpaceSetNumbers(Space space, const SpaceNumbers *numbers);
@@ -134,11 +134,15 @@ PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
  */
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
 
-/* SpacePlaceTube - the film, and what the tube adds to the vesicles' own mobility, of vesicles that have been placed at
-   X[own][size]. Nothing is added where a vesicle touches the tube. SpaceMeasureFilm - the film of X. Collective. */
+/* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own mobility, of vesicles
+   that have been placed at X[own][size]. Nothing is added where a vesicle touches the tube. SpaceMeasureFilm - the film
+   of X, where the surfaces are placed, and the spacing. SpaceAddTube - V[own][size] += what the tube makes of the
+   forces F[own][size] on other vesicles. SpaceMeasureThrust - of the membranes' forces, minus work.F. Collective. */
 PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
 
 PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
+PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, const PetscReal F[], PetscReal V[]);
+PETSC_EXTERN PetscErrorCode SpaceMeasureThrust(Space space);
 
 /* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as
    the first guess, in one of the Newton steps of a time step, of which the first may make new factors, and set V to the
