@@ -138,7 +138,10 @@ PetscErrorCode SceneResolveSpace(Draft s) {
       {s->time.adapt == ADAPT_ERROR && s->scheme.order < 2,
        "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with "
        "-scheme_order 2 or 3"},
-      {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number from 4 to 32"},
+      {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number"},
+      {s->space.degree > 32 && s->dim != DIM_AXIAL,
+       "-sphere_degree {-sphere_degree}: more than a step in three dimensions has time for; allowed with -dim 3: up to "
+       "32"},
       {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
                            "-dim 3: 1, or one vesicle"},
       {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};

@@ -238,7 +238,7 @@ static const OptionRow table[] = {
   {"-tube_radius", OPT_REAL, AT(space.tube.radius), "0", ">=0", "axisymmetric: radius of a circular tube about the axis x (length); 0: unbounded fluid", &need_axial, IN_SPACE},
   {"-tube_pressure_drop", OPT_REAL, AT(space.tube.pressure_drop), "0", "any", "in place of -flow_peak_velocity: pressure drop along -tube_period, vesicles included, over the density (length^2/time^2)", &need_tube, IN_SPACE},
   {"-tube_period", OPT_REAL, AT(space.tube.period), "0", ">=0", "length of tube over which -tube_pressure_drop is given (length); 0: the flux is given", &need_tube, IN_SPACE},
-  {"-sphere_degree", OPT_INT, AT(space.degree), "12", "[4,32]", "p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many", &need_space, IN_SPACE},
+  {"-sphere_degree", OPT_INT, AT(space.degree), "12", "[4,64]", "p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many; axisymmetric: p + 1; up to 32 with -dim 3", &need_space, IN_SPACE},
   {"-sphere_label_rate", OPT_REAL, AT(space.label_rate), "0", ">=0", "rate at which labels are drawn to a spectrum that falls off (1/time); 0: 10 times the larger of the flow's rate and bending/(nu R0^3)", &need_space, IN_SPACE},
   {"-bending_newton", OPT_INT, AT(space.newton), "1", "[1,2]", "Newton steps on the bending energy within a time step; 2: larger steps of stiff membranes", &need_space, MAY_CHANGE, IN_SPACE},
   {"-time_step", OPT_REAL, AT(time.dt), "0.01", ">0", "dt (time)", NULL, MAY_CHANGE, IN_SPACE},

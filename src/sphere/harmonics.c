@@ -4,13 +4,13 @@ PetscInt HarmonicsDegree(PetscInt k) {
   return (PetscInt)PetscSqrtReal((PetscReal)k + 0.5);
 }
 
-/* P[l][m] at x = cos theta, s = sin theta, rows of p + 1; 0 for m > l. */
-static void LegendreAt(PetscInt p, PetscReal x, PetscReal s, PetscReal P[]) {
+/* P[l][m], m <= most, at x = cos theta, s = sin theta, rows of p + 1; 0 for m > l. */
+static void LegendreAt(PetscInt p, PetscInt most, PetscReal x, PetscReal s, PetscReal P[]) {
   const PetscInt row = p + 1;
   P[0] = PetscSqrtReal(1 / (4 * PETSC_PI));
-  for (PetscInt m = 1; m <= p; m++)
+  for (PetscInt m = 1; m <= most; m++)
     P[m * row + m] = PetscSqrtReal((2 * m + 1.) / (2 * m)) * s * P[(m - 1) * row + m - 1];
-  for (PetscInt m = 0; m < p; m++) {
+  for (PetscInt m = 0; m <= most && m < p; m++) {
     P[(m + 1) * row + m] = PetscSqrtReal(2 * m + 3.) * x * P[m * row + m];
     for (PetscInt l = m + 2; l <= p; l++) {
       const PetscReal a = PetscSqrtReal((4. * l * l - 1) / (l * l - m * m)),
@@ -33,16 +33,17 @@ static void HarmonicsSet(PetscInt m, const PetscReal turn[2], const PetscReal A[
   }
 }
 
-PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[], PetscInt parts,
-                           PetscReal table[]) {
+/* HarmonicsAt of orders |m| <= most; other columns stay as they are. */
+static PetscErrorCode HarmonicsWithin(PetscInt p, PetscInt most, PetscInt n, const PetscReal theta[],
+                                      const PetscReal phi[], PetscInt parts, PetscReal table[]) {
   const PetscInt count = HarmonicsCount(p), row = p + 1;
   PetscReal *P;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(row * row, &P));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal x = PetscCosReal(theta[i]), s = PetscSinReal(theta[i]);
-    if (i == 0 || theta[i] != theta[i - 1]) LegendreAt(p, x, s, P);
-    for (PetscInt m = 0; m <= p; m++) {
+    if (i == 0 || theta[i] != theta[i - 1]) LegendreAt(p, most, x, s, P);
+    for (PetscInt m = 0; m <= most; m++) {
       const PetscReal scale = m ? PETSC_SQRT2 : 1;
       const PetscReal turn[2] = {scale * PetscCosReal(m * phi[i]), scale * PetscSinReal(m * phi[i])};
       for (PetscInt l = m; l <= p; l++) {
@@ -63,14 +64,28 @@ PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode HarmonicsRevolve(PetscInt p, PetscInt n, const PetscReal table[], PetscReal out[]) {
-  PetscInt column = 0;
+PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[], PetscInt parts,
+                           PetscReal table[]) {
   PetscFunctionBeginUser;
-  for (PetscInt part = 0; part < 3; part++)
-    for (PetscInt l = part ? 1 : 0; l <= p; l++, column++) {
-      const PetscInt m = part == 2 ? -1 : part;
-      for (PetscInt i = 0; i < n; i++) out[column * n + i] = table[(l * l + l + m) * n + i] / (part ? PETSC_SQRT2 : 1);
-    }
+  PetscCall(HarmonicsWithin(p, p, n, theta, phi, parts, table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode HarmonicsRevolvedAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
+                                   PetscInt parts, PetscReal table[]) {
+  const PetscInt count = HarmonicsCount(p);
+  PetscReal *one;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(parts * count, &one));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal *entry = table + i;
+    PetscCall(HarmonicsWithin(p, 1, 1, theta + i, phi + i, parts, one));
+    for (PetscInt part = 0; part < parts; part++)
+      for (PetscInt group = 0; group < 3; group++)
+        for (PetscInt l = group ? 1 : 0; l <= p; l++, entry += n)
+          *entry = one[part * count + l * l + l + (group == 2 ? -1 : group)] / (group ? PETSC_SQRT2 : 1);
+  }
+  PetscCall(PetscFree(one));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,9 +23,10 @@ enum { HARMONIC, HARMONIC_T, HARMONIC_P, HARMONIC_TT, HARMONIC_TP, HARMONIC_PP, 
 PETSC_EXTERN PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
                                         PetscInt parts, PetscReal table[]);
 
-/* HarmonicsRevolve - the columns that fields of bodies of revolution are made of: out[3p + 1][n], Y_(l, 0) of
-   table[count] [n], l = 0 .. p, then Y_(l, 1)/sqrt(2) and Y_(l, -1)/sqrt(2), l = 1 .. p. Not collective. */
-PETSC_EXTERN PetscErrorCode HarmonicsRevolve(PetscInt p, PetscInt n, const PetscReal table[], PetscReal out[]);
+/* HarmonicsRevolvedAt - what fields of bodies of revolution are made of: table[part][3p + 1][n], Y_(l, 0), l = 0 .. p,
+   then Y_(l, 1)/sqrt(2) and Y_(l, -1)/sqrt(2), l = 1 .. p. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode HarmonicsRevolvedAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
+                                                PetscInt parts, PetscReal table[]);
 
 /* HarmonicsTurn - coefficients of f(theta, phi + angle) from those of f, or (back) the transpose of this map, which is
    its inverse. x and y differ. Not collective. */

@@ -45,30 +45,14 @@ void FieldComponents(SphereSymmetry symmetry, PetscInt p, PetscInt n, const Pets
   }
 }
 
-/* table[parts][columns][n] of the columns that fields of this symmetry need. */
-static PetscErrorCode SphereHarmonicsAt(SphereSymmetry symmetry, PetscInt p, PetscInt n, const PetscReal theta[],
-                                        const PetscReal phi[], PetscInt parts, PetscReal table[]) {
-  PetscReal *all;
-  PetscFunctionBeginUser;
-  if (symmetry == SPHERE_WHOLE) {
-    PetscCall(HarmonicsAt(p, n, theta, phi, parts, table));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscMalloc1(parts * HarmonicsCount(p) * n, &all));
-  PetscCall(HarmonicsAt(p, n, theta, phi, parts, all));
-  for (PetscInt part = 0; part < parts; part++)
-    PetscCall(HarmonicsRevolve(p, n, all + part * HarmonicsCount(p) * n, table + part * (3 * p + 1) * n));
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, PetscInt parts, SphereTable *t) {
   const PetscInt columns = SphereColumns(symmetry, p);
   PetscFunctionBeginUser;
   *t = (SphereTable){0};
   PetscCall(SphereGridCreate(q, symmetry == SPHERE_WHOLE ? GRID_WHOLE : GRID_MERIDIAN, &t->grid));
   PetscCall(PetscMalloc1(parts * columns * t->grid.n, &t->part[0]));
-  PetscCall(SphereHarmonicsAt(symmetry, p, t->grid.n, t->grid.theta, t->grid.phi, parts, t->part[0]));
+  PetscCall((symmetry == SPHERE_WHOLE ? HarmonicsAt : HarmonicsRevolvedAt)(p, t->grid.n, t->grid.theta, t->grid.phi,
+                                                                           parts, t->part[0]));
   for (PetscInt part = 0; part < parts; part++) {
     t->part[part] = t->part[0] + part * columns * t->grid.n;
     FieldComponents(symmetry, p, t->grid.n, t->part[part], part, t->component);
@@ -196,7 +180,8 @@ static PetscErrorCode TurnedGridsCreate(PetscInt p, PetscInt q, SphereSymmetry s
   PetscCall(PetscMalloc2(t->latitudes * t->columns * g.n, &t->Y, g.n, &t->weight));
   for (PetscInt i = 0; i < t->latitudes; i++) {
     TurnPole(&g, targets->theta[i * targets->around], theta, phi);
-    PetscCall(SphereHarmonicsAt(symmetry, p, g.n, theta, phi, 1, t->Y + i * t->columns * g.n));
+    PetscCall((symmetry == SPHERE_WHOLE ? HarmonicsAt : HarmonicsRevolvedAt)(p, g.n, theta, phi, 1,
+                                                                             t->Y + i * t->columns * g.n));
   }
   for (PetscInt j = 0; j < g.n; j++)
     t->weight[j] = g.weight[j] * 2 * PetscSinReal(g.theta[j] / 2) * LegendreSum(q, PetscCosReal(g.theta[j]));
