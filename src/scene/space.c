@@ -71,41 +71,60 @@ static PetscBool SceneAlongAxis(const RealList *list, PetscBool alike) {
 }
 
 /* What a scene of bodies of revolution about x cannot have; the flow in a tube. */
+/* clang-format off */
 static PetscErrorCode SceneResolveAxial(Draft s) {
   SceneTube *tube = &s->space.tube;
-  const PetscBool own = (PetscBool)(tube->radius > 0), driven = (PetscBool)(tube->pressure_drop != 0);
+  const PetscBool in_tube = (PetscBool)(tube->radius > 0), driven = SceneGiven(s, "-tube_pressure_drop");
   const PetscInt flow = s->flow.type;
   PetscFunctionBeginUser;
   if (s->dim != DIM_AXIAL) PetscFunctionReturn(PETSC_SUCCESS);
   const SceneRule rules[] = {
-      {flow != FLOW_QUIESCENT && flow != FLOW_AXIAL && flow != FLOW_TUBE && flow != FLOW_UNIFORM,
-       "-flow_type {-flow_type}: not axisymmetric about x; allowed with -dim axisymmetric: quiescent, axial, tube and "
-       "uniform"},
-      {flow == FLOW_UNIFORM && !SceneAlongAxis(&s->flow.velocity, PETSC_FALSE),
-       "-flow_velocity {-flow_velocity}: off the axis; allowed with -dim axisymmetric: u_x,0,0"},
-      {!SceneAlongAxis(&s->vesicles.center, PETSC_FALSE),
-       "-vesicle_center {-vesicle_center}: off the axis; allowed with -dim axisymmetric: x,0,0"},
-      {!SceneAlongAxis(&s->space.axis, PETSC_FALSE),
-       "-vesicle_axis {-vesicle_axis}: not along the axis; allowed with -dim axisymmetric: 1,0,0"},
-      {SceneGiven(s, "-vesicle_half_axes") && !SceneAlongAxis(&s->space.half_axes, PETSC_TRUE),
-       "-vesicle_half_axes {-vesicle_half_axes}: no body of revolution; allowed with -dim axisymmetric: the second "
-       "equal "
-       "to the third"},
-      {!SceneAlongAxis(&s->gravity.g, PETSC_FALSE),
-       "-fluid_gravity {-fluid_gravity}: off the axis; allowed with -dim axisymmetric: g_x,0,0"},
-      {own && flow != FLOW_QUIESCENT && flow != FLOW_TUBE,
-       "-flow_type {-flow_type}: with -tube_radius {-tube_radius}; allowed: quiescent and tube"},
-      {own && flow == FLOW_TUBE && SceneGiven(s, "-flow_half_width") && s->flow.half_width != tube->radius,
-       "-flow_half_width {-flow_half_width}: with -tube_radius {-tube_radius}; allowed: the same number, or none"},
-      {own && SceneHasContrast(s),
-       "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_radius {-tube_radius}; allowed in a tube: 1"},
-      {driven && (flow != FLOW_TUBE || tube->period == 0), "-tube_pressure_drop {-tube_pressure_drop}: without what it "
-                                                           "needs; allowed: with -flow_type tube and -tube_period"},
-      {driven && (SceneGiven(s, "-flow_peak_velocity") || s->flow.ca != 0),
-       "-tube_pressure_drop {-tube_pressure_drop}: with -flow_peak_velocity or -flow_ca; allowed: one of them"}};
+    {flow != FLOW_QUIESCENT && flow != FLOW_AXIAL && flow != FLOW_TUBE && flow != FLOW_UNIFORM,
+     "-flow_type {-flow_type}: not axisymmetric about x; allowed with -dim axisymmetric: quiescent, axial, tube and uniform"},
+    {flow != FLOW_QUIESCENT && s->flow.center[1] != 0,
+     "-flow_center_y {-flow_center_y}: off the axis; allowed with -dim axisymmetric: 0"},
+    {flow == FLOW_UNIFORM && !SceneAlongAxis(&s->flow.velocity, PETSC_FALSE),
+     "-flow_velocity {-flow_velocity}: off the axis; allowed with -dim axisymmetric: u_x,0,0"},
+    {!SceneAlongAxis(&s->vesicles.center, PETSC_FALSE),
+     "-vesicle_center {-vesicle_center}: off the axis; allowed with -dim axisymmetric: x,0,0"},
+    {!SceneAlongAxis(&s->space.axis, PETSC_FALSE),
+     "-vesicle_axis {-vesicle_axis}: not along the axis; allowed with -dim axisymmetric: 1,0,0"},
+    {SceneGiven(s, "-vesicle_half_axes") && !SceneAlongAxis(&s->space.half_axes, PETSC_TRUE),
+     "-vesicle_half_axes {-vesicle_half_axes}: no body of revolution; allowed with -dim axisymmetric: the second equal to the third"},
+    {!SceneAlongAxis(&s->gravity.g, PETSC_FALSE),
+     "-fluid_gravity {-fluid_gravity}: off the axis; allowed with -dim axisymmetric: g_x,0,0"},
+    {in_tube && flow != FLOW_QUIESCENT && flow != FLOW_TUBE,
+     "-flow_type {-flow_type}: with -tube_radius {-tube_radius}; allowed: quiescent and tube"},
+    {in_tube && flow == FLOW_TUBE && SceneGiven(s, "-flow_half_width") && s->flow.half_width != tube->radius,
+     "-flow_half_width {-flow_half_width}: with -tube_radius {-tube_radius}; allowed: the same number, or none"},
+    {in_tube && SceneHasContrast(s),
+     "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_radius {-tube_radius}; allowed in a tube: 1"},
+    {in_tube && !driven && tube->period > 0,
+     "-tube_period {-tube_period}: without -tube_pressure_drop; allowed: with it, or 0"},
+    {driven && (flow != FLOW_TUBE || tube->period == 0),
+     "-tube_pressure_drop {-tube_pressure_drop}: without what it needs; allowed: with -flow_type tube and -tube_period"},
+    {driven && (SceneGiven(s, "-flow_peak_velocity") || s->flow.ca != 0),
+     "-tube_pressure_drop {-tube_pressure_drop}: with -flow_peak_velocity or -flow_ca; allowed: one of them"}};
   PetscCall(REFUSE(s, rules));
-  if (own) s->flow.half_width = tube->radius;
+  if (in_tube) s->flow.half_width = tube->radius;
   if (driven) s->flow.peak = tube->pressure_drop * tube->radius * tube->radius / (4 * s->fluid.nu * tube->period);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+/* clang-format on */
+
+/* Numbers of single vesicles that options cannot have. */
+static PetscErrorCode SceneCheckEach(Draft s) {
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->space.reduced_volume.n && s->space.spheroid == SPHEROID_CAPSULE; v++)
+    PetscCall(
+        SCENE_REFUSE_IF(s, s->space.reduced_volume.v[v] > CAPSULE_MOST,
+                        "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; "
+                        "allowed: up to 0.97"));
+  for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
+    const PetscReal *axis = s->space.axis.v + 3 * v;
+    PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
+                              "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,23 +158,16 @@ PetscErrorCode SceneResolveSpace(Draft s) {
        "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with "
        "-scheme_order 2 or 3"},
       {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number"},
-      {s->space.degree > 32 && s->dim != DIM_AXIAL,
-       "-sphere_degree {-sphere_degree}: more than a step in three dimensions has time for; allowed with -dim 3: up to "
-       "32"},
+      {s->space.degree > 32 && (s->dim != DIM_AXIAL || count > 1 || *s->vesicles.file),
+       "-sphere_degree {-sphere_degree}: more than whole surfaces have room for; allowed up to 32, or with "
+       "-dim axisymmetric and one vesicle without -vesicle_file"},
+      {SceneGiven(s, "-vesicle_half_axes") && s->space.spheroid == SPHEROID_CAPSULE,
+       "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_spheroid capsule; allowed: one of both descriptions"},
       {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
                            "-dim 3: 1, or one vesicle"},
       {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
   PetscCall(REFUSE(s, rules));
-  for (PetscInt v = 0; v < s->space.reduced_volume.n && s->space.spheroid == SPHEROID_CAPSULE; v++)
-    PetscCall(
-        SCENE_REFUSE_IF(s, s->space.reduced_volume.v[v] > CAPSULE_MOST,
-                        "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; "
-                        "allowed: up to 0.97"));
-  for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
-    const PetscReal *axis = s->space.axis.v + 3 * v;
-    PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
-                              "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
-  }
+  PetscCall(SceneCheckEach(s));
   PetscCall(SceneResolveAxial(s));
   PetscCall(SceneChooseByError(s, AUTO_SPACE));
   PetscCall(OptionsDepend(&s->options, s));

@@ -5,7 +5,7 @@
 #include "sphere/shape.h"
 
 #define OFF 0.05      /* of R0: root mean square distance up to which points lie on the surface that fits them */
-#define REVOLVED 1e-8 /* of coefficients: what is neglected of a body of revolution */
+#define REVOLVED 1e-8 /* of R0: coefficients that a body of revolution has not, which are neglected */
 #define SPREAD 1e-4   /* of points: worse spread ones leave coefficients open */
 
 /* X[3][count] of a capsule, or of a spheroid whose grid has its poles on the axis. */
@@ -91,7 +91,7 @@ static PetscErrorCode SurfaceOfPoints(Scene s, PetscInt v, Sphere sphere, PetscI
 }
 
 /* That the coefficients X[3][count] are those of a body of revolution. */
-static PetscErrorCode SurfaceCheckRevolved(Scene s, PetscInt v, const PetscReal X[]) {
+static PetscErrorCode SurfaceCheckRevolved(Scene s, PetscInt v, PetscReal R0, const PetscReal X[]) {
   const PetscInt size = 3 * HarmonicsCount(s->space.degree);
   PetscReal *c, *again, off = 0;
   Sphere revolved;
@@ -101,12 +101,14 @@ static PetscErrorCode SurfaceCheckRevolved(Scene s, PetscInt v, const PetscReal 
   SphereFold(revolved, X, c);
   SphereUnfold(revolved, c, again);
   for (PetscInt k = 0; k < size; k++) off = PetscMax(off, PetscAbsReal(again[k] - X[k]));
+  const PetscBool outward = (PetscBool)(c[s->space.degree + 1] > 0); /* the distance from the axis is positive */
   PetscCall(PetscFree2(c, again));
   PetscCall(SphereDestroy(&revolved));
   PetscCall(
-      SCENE_REFUSE_IF(s, off > REVOLVED,
+      SCENE_REFUSE_IF(s, !(off <= REVOLVED * R0) || !outward,
                       "-vesicle_file {-vesicle_file}: surface %.0f is no body of revolution about x; allowed with "
-                      "-dim axisymmetric: coefficients c_x of m = 0 and equal ones c_y of m = 1, c_z of m = -1",
+                      "-dim axisymmetric: coefficients c_x of m = 0 and equal ones c_y of m = 1, c_z of m = -1, those "
+                      "of l = 1 positive",
                       {v + 1}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,7 +138,7 @@ static PetscErrorCode SurfaceOfFile(Scene s, const SurfaceRows *rows, PetscInt v
                             "-vesicle_file {-vesicle_file}: surface %.0f folds or crosses itself; allowed: a surface "
                             "that each ray from its centroid crosses once, at a -sphere_degree that resolves it",
                             {v + 1}));
-  if (s->dim == DIM_AXIAL) PetscCall(SurfaceCheckRevolved(s, v, X));
+  if (s->dim == DIM_AXIAL) PetscCall(SurfaceCheckRevolved(s, v, own, X));
   *R0 = SceneGiven(s, "-vesicle_radius") ? ListEntry(&s->space.radius, 1, v, 0) : own;
   for (PetscInt k = 0; k < 3 * count; k++) X[k] *= *R0 / own;
   for (int d = 0; d < 3; d++)

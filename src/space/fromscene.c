@@ -48,8 +48,10 @@ static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
   if (!space->tube.tube) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceCheckPassage(s, space));
   PetscCall(SpaceMeasureFilm(space, space->state.X, &film));
-  PetvesCheck(film > 0, s->comm, "-tube_radius %g: a vesicle's first shape is outside by %.3g; allowed: above %.4g",
-              (double)s->space.tube.radius, (double)-film, (double)(s->space.tube.radius - film));
+  PetvesCheck(film >= TUBE_THINNEST * s->space.tube.radius, s->comm,
+              "-tube_radius %g: a vesicle's first shape comes to %.3g of it; allowed: above %.4g",
+              (double)s->space.tube.radius, (double)film,
+              (double)((s->space.tube.radius - film) / (1 - TUBE_THINNEST)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

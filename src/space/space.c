@@ -48,10 +48,7 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, &s->cross));
-  if (setting->tube.radius > 0) {
-    PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube));
-    PetscCall(PetscMalloc1(n * TUBE_ROWS, &s->tube.wall));
-  }
+  if (setting->tube.radius > 0) { PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube)); }
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -146,9 +143,10 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     PetscCall(PetscFree(u));
   }
   if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->work.Xstar));
-  if (s->tube.tube && s->tube.film <= 0)
-    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE, "a vesicle is outside the tube by %g",
-                            (double)-s->tube.film));
+  if (s->tube.tube && s->tube.film < TUBE_THINNEST * s->setting.tube.radius)
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
+                            "the film between a vesicle and the tube is %.3g, least is %.3g", (double)s->tube.film,
+                            (double)(TUBE_THINNEST * s->setting.tube.radius)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
   if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));

@@ -3,11 +3,13 @@
 
 /* The extent of all vesicles where their surfaces `at` have been placed. */
 static PetscErrorCode SpaceTubeExtent(Space s, TubeExtent *extent) {
-  *extent = (TubeExtent){.gap = PETSC_MAX_REAL};
   PetscFunctionBeginUser;
+  *extent = TubeNothing();
   for (PetscInt v = 0; v < s->share.own; v++) TubeMeasure(s->tube.tube, s->vesicle[v]->at, extent);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->gap, 1, MPIU_REAL, MPI_MIN, s->share.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->low, 1, MPIU_REAL, MPI_MIN, s->share.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->stretch, 1, MPIU_REAL, MPI_MAX, s->share.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->high, 1, MPIU_REAL, MPI_MAX, s->share.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -22,32 +24,40 @@ PetscErrorCode SpaceMeasureFilm(Space s, const PetscReal X[], PetscReal *film) {
 }
 
 PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
-  const PetscInt each = s->size * TUBE_ROWS;
+  const Tube tube = s->tube.tube;
   TubeExtent extent;
   PetscFunctionBeginUser;
   PetscCall(SpaceTubeExtent(s, &extent));
   s->tube.film = extent.gap;
-  if (s->tube.film <= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TubePlace(s->tube.tube, s->sphere->p, &extent));
+  if (s->tube.film < TUBE_THINNEST * s->setting.tube.radius) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TubePlace(tube, s->sphere->p, &extent));
+  const PetscInt each = s->size * TubeRowCount(tube);
+  PetscCall(PetscFree(s->tube.wall));
+  PetscCall(PetscMalloc1(s->share.own * each, &s->tube.wall));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(TubeFactor(s->tube.tube, X + v * s->size, s->tube.wall + v * each));
-    PetscCall(TubeAddMobility(s->size, s->tube.wall + v * each, s->vesicle[v]->M));
+    PetscCall(TubeFactor(tube, X + v * s->size, s->tube.wall + v * each));
+    PetscCall(TubeAddMobility(tube, s->size, s->tube.wall + v * each, s->vesicle[v]->M));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpaceAddTube(Space s, const PetscReal F[], PetscReal V[]) {
-  const PetscInt each = s->size * TUBE_ROWS;
-  PetscReal all[TUBE_ROWS] = {0}, others[TUBE_ROWS];
+  const Tube tube = s->tube.tube;
+  const PetscInt rows = TubeRowCount(tube), each = s->size * rows;
+  PetscMPIInt n;
+  PetscReal *all, *others;
   PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(rows, &n));
+  PetscCall(PetscCalloc2(rows, &all, rows, &others));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(TubeRows(s->size, s->tube.wall + v * each, 1, F + v * s->size, all));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, TUBE_ROWS, MPIU_REAL, MPI_SUM, s->share.comm));
+    PetscCall(TubeRows(tube, s->size, s->tube.wall + v * each, 1, F + v * s->size, all));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, n, MPIU_REAL, MPI_SUM, s->share.comm));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(PetscArraycpy(others, all, TUBE_ROWS));
-    PetscCall(TubeRows(s->size, s->tube.wall + v * each, -1, F + v * s->size, others));
-    PetscCall(TubeAddRows(s->size, s->tube.wall + v * each, others, V + v * s->size));
+    PetscCall(PetscArraycpy(others, all, rows));
+    PetscCall(TubeRows(tube, s->size, s->tube.wall + v * each, -1, F + v * s->size, others));
+    PetscCall(TubeAddRows(tube, s->size, s->tube.wall + v * each, others, V + v * s->size));
   }
+  PetscCall(PetscFree2(all, others));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

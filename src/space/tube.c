@@ -2,9 +2,12 @@
 #include "numerics/blas.h"
 #include <petscdt.h>
 
-#define HIGHEST 18 /* wave number times the gap, above which there is nothing */
-#define SMALL 1e-5 /* arguments below which Bessel functions are their first terms */
-#define MOST_RINGS 2048
+#define HIGHEST 18      /* wave number times the gap, above which there is nothing */
+#define SMALL 1e-5      /* arguments below which Bessel functions are their first terms */
+#define MOST_RINGS 4096 /* degree of their grid */
+#define LEAST_NODES 160
+#define MOST_NODES 5120
+#define WAVES 4       /* nodes for a length over the gap */
 #define NEGLECTED 37. /* of the exponents of an integrand's tail */
 
 /* A node of the quadrature in k: weight, K_0 and K_1 at kR over exp(-kR), and L of G(k, R) = L L^T. */
@@ -15,8 +18,9 @@ typedef struct {
 struct _p_Tube {
   TubeSetting setting;
   PetscReal nu;
-  PetscReal u[TUBE_NODES], w[TUBE_NODES]; /* Gauss and Legendre on (0, 1) */
-  TubeNode node[TUBE_NODES];
+  PetscInt nodes;
+  PetscReal *u, *w;  /* [nodes] Gauss and Legendre on (0, 1) */
+  TubeNode *node;    /* [nodes] */
   SphereTable rings; /* of the last degrees; n 0: not made */
 };
 
@@ -75,7 +79,6 @@ PetscErrorCode TubeCreate(const TubeSetting *setting, PetscReal nu, Tube *out) {
   *out = t;
   t->setting = *setting;
   t->nu = nu;
-  PetscCall(PetscDTGaussQuadrature(TUBE_NODES, 0, 1, t->u, t->w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,15 +86,33 @@ PetscErrorCode TubeDestroy(Tube *tube) {
   PetscFunctionBeginUser;
   if (!*tube) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*tube)->rings.grid.n) PetscCall(SphereTableDestroy(&(*tube)->rings));
+  PetscCall(PetscFree3((*tube)->u, (*tube)->w, (*tube)->node));
   PetscCall(PetscFree(*tube));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes close enough for the waves along the whole extent that decay over the gap: LEAST_NODES times a power of two. */
+static PetscErrorCode TubeMakeNodes(Tube t, const TubeExtent *extent) {
+  PetscInt nodes = LEAST_NODES;
+  PetscFunctionBeginUser;
+  while ((PetscReal)nodes * extent->gap < WAVES * (extent->high - extent->low) && nodes < MOST_NODES) nodes *= 2;
+  if (nodes == t->nodes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3(t->u, t->w, t->node));
+  PetscCall(PetscMalloc3(nodes, &t->u, nodes, &t->w, nodes, &t->node));
+  PetscCall(PetscDTGaussQuadrature(nodes, 0, 1, t->u, t->w));
+  t->nodes = nodes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscInt TubeRowCount(Tube t) {
+  return 4 * t->nodes + 1;
 }
 
 /* Rings of degree q, 2p times a power of two, no farther apart than the gap. */
 static PetscErrorCode TubeMakeRings(Tube t, PetscInt p, const TubeExtent *extent) {
   PetscInt q = 2 * p;
   PetscFunctionBeginUser;
-  while (PETSC_PI * extent->stretch > extent->gap * (PetscReal)(q + 1) && q < MOST_RINGS) q *= 2;
+  while (PETSC_PI * extent->stretch > extent->gap * (PetscReal)(q + 1) && 2 * q <= MOST_RINGS) q *= 2;
   if (t->rings.grid.n == q + 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (t->rings.grid.n) PetscCall(SphereTableDestroy(&t->rings));
   PetscCall(SphereTableCreate(p, q, SPHERE_REVOLVED, 1, &t->rings));
@@ -102,7 +123,8 @@ PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
   const PetscReal R = t->setting.radius, highest = HIGHEST / extent->gap;
   PetscFunctionBeginUser;
   PetscCall(TubeMakeRings(t, p, extent));
-  for (PetscInt j = 0; j < TUBE_NODES; j++) { /* k = highest u^3: the integrand has log k at 0 */
+  PetscCall(TubeMakeNodes(t, extent));
+  for (PetscInt j = 0; j < t->nodes; j++) { /* k = highest u^3: the integrand has log k at 0 */
     TubeNode *node = &t->node[j];
     PetscReal G[2][2];
     node->k = highest * t->u[j] * t->u[j] * t->u[j];
@@ -116,25 +138,32 @@ PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+TubeExtent TubeNothing(void) {
+  return (TubeExtent){.gap = PETSC_MAX_REAL, .low = PETSC_MAX_REAL, .high = PETSC_MIN_REAL};
+}
+
 void TubeMeasure(Tube t, Surface s, TubeExtent *extent) {
-  const PetscReal *T = s->D[HARMONIC_T], *r = s->D[HARMONIC] + s->n;
+  const PetscReal *T = s->D[HARMONIC_T], *x = s->D[HARMONIC], *r = x + s->n;
   for (PetscInt i = 0; i < s->n; i++) {
     const PetscBool crest = (PetscBool)(i > 0 && i < s->n - 1 && r[i] > r[i - 1] && r[i] > r[i + 1]);
     PetscReal top = r[i];
     if (crest) top -= PetscSqr(r[i + 1] - r[i - 1]) / (8 * (r[i + 1] - 2 * r[i] + r[i - 1])); /* of a parabola */
     extent->gap = PetscMin(extent->gap, t->setting.radius - top);
+    extent->low = PetscMin(extent->low, x[i]);
+    extent->high = PetscMax(extent->high, x[i]);
     extent->stretch = PetscMax(extent->stretch, PetscSqrtReal(PetscSqr(T[i]) + PetscSqr(T[s->n + i])));
   }
 }
 
-/* rings[2 n][TUBE_ROWS]: what forces along x at each ring are in the rows, then those along r. */
+/* rings[2 n][rows]: what forces along x at each ring are in the rows, then those along r. */
 static void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]) {
   const PetscReal R = t->setting.radius, P = t->setting.period;
+  const PetscInt rows = TubeRowCount(t);
   const PetscReal driven = P > 0 ? PetscSqrtReal(1 / (8 * PETSC_PI * t->nu * P)) : 0;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal r = X[n + i];
-    PetscReal *along = rings + i * TUBE_ROWS, *across = rings + (n + i) * TUBE_ROWS;
-    for (PetscInt j = 0; j < TUBE_NODES; j++) {
+    PetscReal *along = rings + i * rows, *across = rings + (n + i) * rows;
+    for (PetscInt j = 0; j < t->nodes; j++) {
       const TubeNode *node = &t->node[j];
       const PetscReal scale = PetscSqrtReal(node->weight) * PetscExpReal(-node->k * (R - r)),
                       c = PetscCosReal(node->k * X[i]), s = PetscSinReal(node->k * X[i]);
@@ -151,56 +180,60 @@ static void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]
         across[4 * j + 2 * wall + 1] = -s * G[wall][0];
       }
     }
-    along[TUBE_ROWS - 1] = driven * 2 * (1 - r * r / (R * R));
-    across[TUBE_ROWS - 1] = 0;
+    along[rows - 1] = driven * 2 * (1 - r * r / (R * R));
+    across[rows - 1] = 0;
   }
 }
 
 PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[]) {
   const SphereTable *table = &t->rings;
-  const PetscInt n = table->grid.n;
+  const PetscInt n = table->grid.n, rows = TubeRowCount(t);
   PetscReal *X, *rings, *weighted;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(3 * n, &X, 2 * n * TUBE_ROWS, &rings, n * table->component[0].columns, &weighted));
+  PetscCall(PetscMalloc3(3 * n, &X, 2 * n * rows, &rings, n * table->component[0].columns, &weighted));
   PetscCall(SphereFieldValues(table, HARMONIC, c, X));
   TubeRings(t, n, X, rings);
   for (int d = 0; d < 2; d++) {
     const FieldComponent *own = &table->component[d];
     for (PetscInt k = 0; k < own->columns * n; k++) weighted[k] = table->grid.weight[k % n] * own->part[HARMONIC][k];
-    PetscCall(DenseProduct(PETSC_FALSE, TUBE_ROWS, own->columns, n, rings + d * n * TUBE_ROWS, weighted,
-                           T + own->first * TUBE_ROWS));
+    PetscCall(DenseProduct(PETSC_FALSE, rows, own->columns, n, rings + d * n * rows, weighted, T + own->first * rows));
   }
   PetscCall(PetscFree3(X, rings, weighted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The sign of a row: the wall holds fluid back, and a given pressure drop lets it go. */
-static inline PetscReal TubeSign(PetscInt row) {
-  return row == TUBE_ROWS - 1 ? 1 : -1;
+static inline PetscReal TubeSign(Tube t, PetscInt row) {
+  return row == TubeRowCount(t) - 1 ? 1 : -1;
 }
 
-PetscErrorCode TubeAddMobility(PetscInt size, const PetscReal T[], PetscReal M[]) {
-  const DenseView factor = {T, TUBE_ROWS, size, TUBE_ROWS};
+PetscErrorCode TubeAddMobility(Tube t, PetscInt size, const PetscReal T[], PetscReal M[]) {
+  const PetscInt rows = TubeRowCount(t);
+  const DenseView factor = {T, rows, size, rows};
   PetscReal *with_sign;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(size * TUBE_ROWS, &with_sign));
-  for (PetscInt k = 0; k < size * TUBE_ROWS; k++) with_sign[k] = TubeSign(k % TUBE_ROWS) * T[k];
-  PetscCall(DenseProductWithin(PETSC_TRUE, factor, (DenseView){with_sign, TUBE_ROWS, size, TUBE_ROWS}, 1, M, size));
+  PetscCall(PetscMalloc1(size * rows, &with_sign));
+  for (PetscInt k = 0; k < size * rows; k++) with_sign[k] = TubeSign(t, k % rows) * T[k];
+  PetscCall(DenseProductWithin(PETSC_TRUE, factor, (DenseView){with_sign, rows, size, rows}, 1, M, size));
   PetscCall(PetscFree(with_sign));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TubeRows(PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal F[], PetscReal row[]) {
+PetscErrorCode TubeRows(Tube t, PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal F[],
+                        PetscReal row[]) {
   PetscFunctionBeginUser;
-  PetscCall(DenseMultAdd(PETSC_FALSE, TUBE_ROWS, size, scale, T, F, row));
+  PetscCall(DenseMultAdd(PETSC_FALSE, TubeRowCount(t), size, scale, T, F, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TubeAddRows(PetscInt size, const PetscReal T[], const PetscReal row[], PetscReal U[]) {
-  PetscReal with_sign[TUBE_ROWS];
+PetscErrorCode TubeAddRows(Tube t, PetscInt size, const PetscReal T[], const PetscReal row[], PetscReal U[]) {
+  const PetscInt rows = TubeRowCount(t);
+  PetscReal *with_sign;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < TUBE_ROWS; k++) with_sign[k] = TubeSign(k) * row[k];
-  PetscCall(DenseMultAdd(PETSC_TRUE, TUBE_ROWS, size, 1, T, with_sign, U));
+  PetscCall(PetscMalloc1(rows, &with_sign));
+  for (PetscInt k = 0; k < rows; k++) with_sign[k] = TubeSign(t, k) * row[k];
+  PetscCall(DenseMultAdd(PETSC_TRUE, rows, size, 1, T, with_sign, U));
+  PetscCall(PetscFree(with_sign));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,19 +6,17 @@
 
    subscripts r and R for derivatives, and the wall adds the velocity
 
-       W = -(1/pi) INT_0^inf Re[ exp(ik(x - x')) G(k, r)* G(k, R)^-1 G(k, r') ] dk = -T^T T,
+       W = -(1/pi) INT_0^inf Re[ exp(ik(x - x')) G(k, r)* G(k, R)^-1 G(k, r') ] dk = -T^T T,     * conjugate transpose,
 
-   so that it comes to rest at R and no fluid is pushed through the tube (Haberman and Sayre 1958 have the sphere). With
-   a factor L L^T of G(k, R), which a turn of the phase makes real, a row of T is a component of L^-1 G at a node k of a
-   quadrature, its real part or its imaginary one.
+   over the viscosity, so that the fluid is at rest at R and none is pushed through the tube (Haberman and Sayre 1958
+   have the sphere). G is real but for the factors i, which belong to the phase: diag(1, i) on both sides takes them
+   away. With the factor L L^T of this G(k, R), a row of T is a component of L^-1 G at a node k of a quadrature, its
+   real part or its imaginary one.
 
    With a given pressure drop over a period, forces f drive a mean velocity (f . u_1)/(8 pi nu P) too, u_1 the flow of
    mean velocity 1 and P the period: one more row of T, of the other sign. */
 #pragma once
 #include "sphere/surface.h"
-
-#define TUBE_NODES 160
-#define TUBE_ROWS (4 * TUBE_NODES + 1)
 
 typedef struct {
   PetscReal radius; /* R (length); 0: no tube */
@@ -27,30 +25,36 @@ typedef struct {
 
 typedef struct _p_Tube *Tube;
 
-/* How near bodies of revolution come to the wall, negative where they are outside, and how long a meridian is for its
-   angle at most. */
+/* How near bodies of revolution come to the wall, negative where they are outside, how long a meridian is for its angle
+   at most, and from where to where the bodies reach along the axis. */
 typedef struct {
-  PetscReal gap, stretch;
+  PetscReal gap, stretch, low, high;
 } TubeExtent;
 
-/* TubeCreate - of a fluid of viscosity nu. TubeMeasure - add a body of revolution that has been placed to an extent
-   (gap PETSC_MAX_REAL, stretch 0: of none). TubePlace - the nodes, and rings that are no farther apart than the gap,
-   for bodies of this degree and extent. Not collective. Errors: memory. */
+/* TubeCreate - of a fluid of viscosity nu. TubeNothing - the extent of no body; TubeMeasure - add one that has been
+   placed. TubePlace - the nodes, as many as the length of the extent over its gap asks for, and rings that are no
+   farther apart than the gap, for bodies of this degree. TubeRowCount - rows of T since then, four a node and one. Not
+   collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeCreate(const TubeSetting *setting, PetscReal nu, Tube *tube);
 PETSC_EXTERN PetscErrorCode TubeDestroy(Tube *tube);
+PETSC_EXTERN TubeExtent TubeNothing(void);
 PETSC_EXTERN void TubeMeasure(Tube tube, Surface surface, TubeExtent *extent);
 PETSC_EXTERN PetscErrorCode TubePlace(Tube tube, PetscInt p, const TubeExtent *extent);
+PETSC_EXTERN PetscInt TubeRowCount(Tube tube);
 
-/* TubeFactor - T[size][TUBE_ROWS] of a body of revolution c[size]. Not collective. Errors: memory. */
+#define TUBE_THINNEST 0.005 /* of its radius: a thinner film takes too many rings */
+
+/* TubeFactor - T[size][rows] of a body of revolution c[size]. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal T[]);
 
-/* TubeAddMobility - M[size][size] += T^T S T, S the signs of the rows. TubeRows - row[TUBE_ROWS] += scale T F[size].
+/* TubeAddMobility - M[size][size] += T^T S T, S the signs of the rows. TubeRows - row[rows] += scale T F[size].
    TubeAddRows - U[size] += T^T S row. Not collective. */
-PETSC_EXTERN PetscErrorCode TubeAddMobility(PetscInt size, const PetscReal T[], PetscReal M[]);
-PETSC_EXTERN PetscErrorCode TubeRows(PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal F[],
-                                     PetscReal row[]);
-PETSC_EXTERN PetscErrorCode TubeAddRows(PetscInt size, const PetscReal T[], const PetscReal row[], PetscReal U[]);
+PETSC_EXTERN PetscErrorCode TubeAddMobility(Tube tube, PetscInt size, const PetscReal T[], PetscReal M[]);
+PETSC_EXTERN PetscErrorCode TubeRows(Tube tube, PetscInt size, const PetscReal T[], PetscReal scale,
+                                     const PetscReal F[], PetscReal row[]);
+PETSC_EXTERN PetscErrorCode TubeAddRows(Tube tube, PetscInt size, const PetscReal T[], const PetscReal row[],
+                                        PetscReal U[]);
 
-/* TubeThrust - F . u_1 of forces F[size] on a body of revolution where it has been placed: -pi R^2 times the pressure
-   drop that they add, by the reciprocal theorem. Not collective. */
+/* TubeThrust - F . u_1 of forces F[size] on the fluid by a body of revolution where it has been placed: -pi R^2 times
+   the pressure drop that they add, by the reciprocal theorem. Not collective. */
 PETSC_EXTERN PetscErrorCode TubeThrust(Tube tube, Surface surface, const PetscReal F[], PetscReal *thrust);

@@ -206,8 +206,9 @@ static PetscErrorCode Vesicle3FitRigid(Vesicle3 v, const PetscReal U[], PetscRea
   (void)PetscArrayzero(q, 6);
   for (int j = 0; j < 6; j++) {
     PetscReal part = 0;
+    if (l[j] <= LEAST_MOTION * l[5]) continue;
     for (int k = 0; k < 6; k++) part += D[6 * j + k] * b[k] / l[j];
-    for (int k = 0; k < 6 && l[j] > LEAST_MOTION * l[5]; k++) q[k] += part * D[6 * j + k];
+    for (int k = 0; k < 6; k++) q[k] += part * D[6 * j + k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
