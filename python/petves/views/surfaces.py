@@ -15,7 +15,7 @@ from petves.views.figures import PLAIN, Look, blank_figure
 #: Views: what is on the two axes of the picture, and from where one looks (elevation, azimuth in degrees).
 SIDES = {"$x, y$": (90, -90), "$x, z$": (0, -90), "$y, z$": (0, 0)}
 LIGHT = LightSource(azdeg=150, altdeg=55)
-FINER = 4  # points that are drawn for each of the saved ones, along both angles
+LATITUDES = 36  # that are drawn at least; three times the saved ones, where these are more
 
 
 def _basis(degree: int, theta: np.ndarray, phi: np.ndarray) -> np.ndarray:
@@ -27,9 +27,9 @@ def _basis(degree: int, theta: np.ndarray, phi: np.ndarray) -> np.ndarray:
 def smooth_surfaces(run: SurfaceRun, frame: int) -> np.ndarray:
     """Return x, y, z and tension of all surfaces at a saved time, shape (vesicles, 4, latitudes, longitudes).
 
-    The grid is FINER times that of the saved points; beside the poles, not at them, each of its parts has a normal.
+    The grid is finer than that of the saved points; beside the poles, not at them, each of its parts has a normal.
     """
-    p, n = run.degree, FINER * (run.degree + 1)
+    p, n = run.degree, max(LATITUDES, 3 * (run.degree + 1))
     down = np.append(np.repeat(np.arccos(leggauss(p + 1)[0][::-1]), 2 * p + 2), (0, np.pi))
     around = np.append(np.tile(np.pi * np.arange(2 * p + 2) / (p + 1), p + 1), (0, 0))
     theta, phi = np.meshgrid(np.linspace(1e-3, np.pi - 1e-3, n), np.linspace(2 * np.pi, 0, 2 * n + 1), indexing="ij")
