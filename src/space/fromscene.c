@@ -48,10 +48,9 @@ static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
   if (!space->tube.tube) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceCheckPassage(s, space));
   PetscCall(SpaceMeasureFilm(space, space->state.X, &film));
-  PetvesCheck(film >= TUBE_THINNEST * s->space.tube.radius, s->comm,
+  PetvesCheck(film >= space->tube.least, s->comm,
               "-tube_radius %g: a vesicle's first shape comes to %.3g of it; allowed: above %.4g",
-              (double)s->space.tube.radius, (double)film,
-              (double)((s->space.tube.radius - film) / (1 - TUBE_THINNEST)));
+              (double)s->space.tube.radius, (double)film, (double)(s->space.tube.radius - film + space->tube.least));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

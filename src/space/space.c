@@ -143,10 +143,10 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     PetscCall(PetscFree(u));
   }
   if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->work.Xstar));
-  if (s->tube.tube && s->tube.film < TUBE_THINNEST * s->setting.tube.radius)
+  if (s->tube.tube && s->tube.film < s->tube.least)
     PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
                             "the film between a vesicle and the tube is %.3g, least is %.3g", (double)s->tube.film,
-                            (double)(TUBE_THINNEST * s->setting.tube.radius)));
+                            (double)s->tube.least));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
   if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));

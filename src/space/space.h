@@ -63,6 +63,7 @@ typedef struct {
   PetscReal *wall;   /* [own][size][rows] factors of the tube's part */
   PetscReal spacing; /* largest of the latitudes of the grids of degree p */
   PetscReal film;    /* least distance of vesicles that have been placed; negative where they overlap */
+  PetscReal least;   /* film that nodes and rings resolve (TubeLeastFilm) */
   PetscReal thrust;  /* of the membranes' forces on the fluid in the last solve (TubeThrust) */
 } SpaceTube;
 
@@ -135,10 +136,10 @@ PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
 
 /* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own mobility, of vesicles
-   that have been placed at X[own][size]. Nothing is added where the film is thinner than TUBE_THINNEST.
-   SpaceMeasureFilm - the film of X, where the surfaces are placed, and the spacing. SpaceAddTube - V[own][size] += what
-   the tube makes of the forces F[own][size] on other vesicles. SpaceMeasureThrust - of the membranes' forces, minus
-   work.F. Collective. */
+   that have been placed at X[own][size]. Nothing is added where the film is thinner than the least. SpaceMeasureFilm -
+   the film of X, where the surfaces are placed, the least one and the spacing. SpaceAddTube - V[own][size] += what the
+   tube makes of the forces F[own][size] on other vesicles. SpaceMeasureThrust - of the membranes' forces, minus work.F.
+   Collective. */
 PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
 PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, const PetscReal F[], PetscReal V[]);

@@ -19,6 +19,7 @@ PetscErrorCode SpaceMeasureFilm(Space s, const PetscReal X[], PetscReal *film) {
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(SurfacePlace(s->vesicle[v]->at, X + v * s->size, PETSC_FALSE));
   PetscCall(SpaceTubeExtent(s, &extent));
   *film = extent.gap;
+  s->tube.least = TubeLeastFilm(&extent);
   s->tube.spacing = extent.stretch * PETSC_PI / (PetscReal)(s->sphere->p + 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,7 +30,8 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(SpaceTubeExtent(s, &extent));
   s->tube.film = extent.gap;
-  if (s->tube.film < TUBE_THINNEST * s->setting.tube.radius) PetscFunctionReturn(PETSC_SUCCESS);
+  s->tube.least = TubeLeastFilm(&extent);
+  if (s->tube.film < s->tube.least) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TubePlace(tube, s->sphere->p, &extent));
   const PetscInt each = s->size * TubeRowCount(tube);
   PetscCall(PetscFree(s->tube.wall));

@@ -4,9 +4,9 @@
 
 #define HIGHEST 18      /* wave number times the gap, above which there is nothing */
 #define SMALL 1e-5      /* arguments below which Bessel functions are their first terms */
-#define MOST_RINGS 4096 /* degree of their grid */
+#define MOST_RINGS 2048 /* degree of their grid, of which powers of two reach half at least */
 #define LEAST_NODES 160
-#define MOST_NODES 5120
+#define MOST_NODES 2560
 #define WAVES 4       /* nodes for a length over the gap */
 #define NEGLECTED 37. /* of the exponents of an integrand's tail */
 
@@ -89,6 +89,10 @@ PetscErrorCode TubeDestroy(Tube *tube) {
   PetscCall(PetscFree3((*tube)->u, (*tube)->w, (*tube)->node));
   PetscCall(PetscFree(*tube));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal TubeLeastFilm(const TubeExtent *extent) {
+  return PetscMax(PETSC_PI * extent->stretch / (0.5 * MOST_RINGS), WAVES * (extent->high - extent->low) / MOST_NODES);
 }
 
 /* Nodes close enough for the waves along the whole extent that decay over the gap: LEAST_NODES times a power of two. */

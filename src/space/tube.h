@@ -32,17 +32,17 @@ typedef struct {
 } TubeExtent;
 
 /* TubeCreate - of a fluid of viscosity nu. TubeNothing - the extent of no body; TubeMeasure - add one that has been
-   placed. TubePlace - the nodes, as many as the length of the extent over its gap asks for, and rings that are no
+   placed. TubeLeastFilm - of this extent: thinner ones take more nodes or rings than
+   there may be. TubePlace - the nodes, as many as the length of the extent over its gap asks for, and rings that are no
    farther apart than the gap, for bodies of this degree. TubeRowCount - rows of T since then, four a node and one. Not
    collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeCreate(const TubeSetting *setting, PetscReal nu, Tube *tube);
 PETSC_EXTERN PetscErrorCode TubeDestroy(Tube *tube);
 PETSC_EXTERN TubeExtent TubeNothing(void);
 PETSC_EXTERN void TubeMeasure(Tube tube, Surface surface, TubeExtent *extent);
+PETSC_EXTERN PetscReal TubeLeastFilm(const TubeExtent *extent);
 PETSC_EXTERN PetscErrorCode TubePlace(Tube tube, PetscInt p, const TubeExtent *extent);
 PETSC_EXTERN PetscInt TubeRowCount(Tube tube);
-
-#define TUBE_THINNEST 0.005 /* of its radius: a thinner film takes too many rings */
 
 /* TubeFactor - T[size][rows] of a body of revolution c[size]. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal T[]);
