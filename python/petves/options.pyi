@@ -105,6 +105,10 @@ class Options(TypedDict, total=False):
     tube_radius: Value  # axisymmetric: radius of a circular tube about the axis x (length); 0: unbounded fluid
     tube_pressure_drop: Value  # in place of -flow_peak_velocity: pressure drop along -tube_period, vesicles included, over the density (length^2/time^2)
     tube_period: Value  # length of tube over which -tube_pressure_drop is given (length); 0: the flux is given
+    tube_throat: Value  # radius to which the tube narrows in a throat (length); 0: no throat
+    tube_throat_center: Value  # x of the middle of the throat (length)
+    tube_throat_length: Value  # of the part of the throat that has its radius (length)
+    tube_throat_mouth: Value  # length of either mouth, along which the radius changes as a cosine (length); 0: -tube_radius
     sphere_degree: Value  # p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many; axisymmetric: p + 1; up to 32 with -dim 3
     sphere_label_rate: Value  # rate at which labels are drawn to a spectrum that falls off (1/time); 0: 10 times the larger of the flow's rate and bending/(nu R0^3)
     bending_newton: Value  # Newton steps on the bending energy within a time step; 2: larger steps of stiff membranes

@@ -99,6 +99,10 @@ static PetscErrorCode SceneResolveAxial(Draft s) {
      "-flow_half_width {-flow_half_width}: with -tube_radius {-tube_radius}; allowed: the same number, or none"},
     {in_tube && SceneHasContrast(s),
      "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_radius {-tube_radius}; allowed in a tube: 1"},
+    {in_tube && tube->throat >= tube->radius,
+     "-tube_throat {-tube_throat}: not narrower than the tube; allowed: below -tube_radius {-tube_radius}, or 0"},
+    {in_tube && tube->throat > 0 && SceneHasContrast(s),
+     "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_throat {-tube_throat}; allowed in a throat: 1"},
     {in_tube && !driven && tube->period > 0,
      "-tube_period {-tube_period}: without -tube_pressure_drop; allowed: with it, or 0"},
     {driven && (flow != FLOW_TUBE || tube->period == 0),
@@ -107,6 +111,7 @@ static PetscErrorCode SceneResolveAxial(Draft s) {
      "-tube_pressure_drop {-tube_pressure_drop}: with -flow_peak_velocity or -flow_ca; allowed: one of them"}};
   PetscCall(REFUSE(s, rules));
   if (in_tube) s->flow.half_width = tube->radius;
+  if (tube->throat_mouth == 0) tube->throat_mouth = tube->radius;
   if (driven) s->flow.peak = tube->pressure_drop * tube->radius * tube->radius / (4 * s->fluid.nu * tube->period);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,7 +193,8 @@ PetscErrorCode SceneViewSpace(Scene s, PetscViewer v) {
   char bounds[64] = "without bounds";
   PetscFunctionBeginUser;
   if (s->space.tube.radius > 0)
-    PetscCall(PetscSNPrintf(bounds, sizeof(bounds), "in a tube of radius %g", (double)s->space.tube.radius));
+    PetscCall(PetscSNPrintf(bounds, sizeof(bounds), "in a tube of radius %g%s", (double)s->space.tube.radius,
+                            s->space.tube.throat > 0 ? " with a throat" : ""));
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
   PetscCall(PetscViewerASCIIPushTab(v));
   PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow %s in three dimensions%s, nu = %g\n", bounds,

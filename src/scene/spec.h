@@ -85,6 +85,8 @@ typedef struct {
   PetscReal radius;        /* 0: none (length) */
   PetscReal pressure_drop; /* over the period, in place of the flow's peak velocity (length^2/time^2) */
   PetscReal period;        /* 0: the flux is given (length) */
+  PetscReal throat;        /* radius of a throat; 0: none (length) */
+  PetscReal throat_center, throat_length, throat_mouth; /* x of its middle, of its narrow part, of a mouth (lengths) */
 } SceneTube;
 
 /* What only scenes in three dimensions have. */

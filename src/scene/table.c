@@ -87,6 +87,10 @@ static PetscBool HasTube(const void *scene) {
   return ((Scene)scene)->space.tube.radius > 0;
 }
 
+static PetscBool HasThroat(const void *scene) {
+  return ((Scene)scene)->space.tube.throat > 0;
+}
+
 static PetscBool IsChannel(const void *scene) {
   const PetscInt *bc = ((Scene)scene)->fluid.bc;
   return bc[0] == BC_PERIODIC && bc[1] == BC_WALL;
@@ -134,6 +138,7 @@ static const OptionNeed
   need_space = {"-dim 3", AT(dim), IS(DIM_SPACE) | IS(DIM_AXIAL)},
   need_axial = {"-dim axisymmetric", AT(dim), IS(DIM_AXIAL)},
   need_tube = {"-tube_radius", .met = HasTube},
+  need_throat = {"-tube_throat", .met = HasThroat},
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
 
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
@@ -238,6 +243,10 @@ static const OptionRow table[] = {
   {"-tube_radius", OPT_REAL, AT(space.tube.radius), "0", ">=0", "axisymmetric: radius of a circular tube about the axis x (length); 0: unbounded fluid", &need_axial, IN_SPACE},
   {"-tube_pressure_drop", OPT_REAL, AT(space.tube.pressure_drop), "0", "any", "in place of -flow_peak_velocity: pressure drop along -tube_period, vesicles included, over the density (length^2/time^2)", &need_tube, IN_SPACE},
   {"-tube_period", OPT_REAL, AT(space.tube.period), "0", ">=0", "length of tube over which -tube_pressure_drop is given (length); 0: the flux is given", &need_tube, IN_SPACE},
+  {"-tube_throat", OPT_REAL, AT(space.tube.throat), "0", ">=0", "radius to which the tube narrows in a throat (length); 0: no throat", &need_tube, IN_SPACE},
+  {"-tube_throat_center", OPT_REAL, AT(space.tube.throat_center), "0", "any", "x of the middle of the throat (length)", &need_throat, IN_SPACE},
+  {"-tube_throat_length", OPT_REAL, AT(space.tube.throat_length), "0", ">=0", "of the part of the throat that has its radius (length)", &need_throat, IN_SPACE},
+  {"-tube_throat_mouth", OPT_REAL, AT(space.tube.throat_mouth), "0", ">=0", "length of either mouth, along which the radius changes as a cosine (length); 0: -tube_radius", &need_throat, IN_SPACE},
   {"-sphere_degree", OPT_INT, AT(space.degree), "12", "[4,64]", "p, even: a shape has (p + 1)^2 spherical harmonics for each coordinate, and its tension as many; axisymmetric: p + 1; up to 32 with -dim 3", &need_space, IN_SPACE},
   {"-sphere_label_rate", OPT_REAL, AT(space.label_rate), "0", ">=0", "rate at which labels are drawn to a spectrum that falls off (1/time); 0: 10 times the larger of the flow's rate and bending/(nu R0^3)", &need_space, IN_SPACE},
   {"-bending_newton", OPT_INT, AT(space.newton), "1", "[1,2]", "Newton steps on the bending energy within a time step; 2: larger steps of stiff membranes", &need_space, MAY_CHANGE, IN_SPACE},

@@ -48,6 +48,11 @@ static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
   if (!space->tube.tube) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceCheckPassage(s, space));
   PetscCall(SpaceMeasureFilm(space, space->state.X, &film));
+  PetvesCheck(
+      film >= space->tube.least || !space->tube.throat, s->comm,
+      "-tube_throat %g: a vesicle's first shape comes to %.3g of a wall; allowed: a -vesicle_center farther away, "
+      "%.3g of it",
+      (double)s->space.tube.throat, (double)film, (double)space->tube.least);
   PetvesCheck(film >= space->tube.least, s->comm,
               "-tube_radius %g: a vesicle's first shape comes to %.3g of it; allowed: above %.4g",
               (double)s->space.tube.radius, (double)film, (double)(s->space.tube.radius - film + space->tube.least));
@@ -68,7 +73,13 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                            .tolerance = s->time.adapt_tol,
                                            .max_step = s->time.adapt_max_step},
                                 .repulsion = {.stress = s->repulsion.stress, .range = s->repulsion.range},
-                                .tube = {.radius = s->space.tube.radius, .period = s->space.tube.period}};
+                                .tube = {.radius = s->space.tube.radius,
+                                         .period = s->space.tube.period,
+                                         .mean = s->flow.type == FLOW_TUBE ? 0.5 * s->flow.peak : 0},
+                                .throat = {.radius = s->space.tube.throat,
+                                           .center = s->space.tube.throat_center,
+                                           .length = s->space.tube.throat_length,
+                                           .mouth = s->space.tube.throat_mouth}};
   Vesicle3Setting *material;
   PetscReal *X;
   PetscFunctionBeginUser;

@@ -48,7 +48,9 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, &s->cross));
-  if (setting->tube.radius > 0) { PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube)); }
+  s->tube.left = 1;
+  if (setting->tube.radius > 0) PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube));
+  if (setting->throat.radius > 0) PetscCall(ThroatCreate(&setting->throat, s->tube.tube, &s->tube.throat));
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -60,7 +62,9 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(SpaceSolverDestroy(s));
   PetscCall(CrossLayerDestroy(&s->cross));
   PetscCall(TubeDestroy(&s->tube.tube));
+  PetscCall(ThroatDestroy(&s->tube.throat));
   PetscCall(PetscFree(s->tube.wall));
+  PetscCall(PetscFree(s->tube.drag));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
   PetscCall(SpaceStateDestroy(&s->state));
@@ -147,6 +151,8 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
                             "the film between a vesicle and the tube is %.3g, least is %.3g", (double)s->tube.film,
                             (double)s->tube.least));
+  else if (s->tube.throat)
+    PetscCall(SpaceAddThroatFlow(s));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
   if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));

@@ -9,7 +9,7 @@
 #include "scheme/bdf.h"
 #include "scheme/stepcontrol.h"
 #include "space/crosslayer.h"
-#include "space/tube.h"
+#include "space/throat.h"
 #include "space/vesicle3.h"
 
 /* A background flow: u[3][n] at the points X[3][n] at time t, not finite where it fails. Not collective. */
@@ -27,6 +27,7 @@ typedef struct {
   StepPolicy policy;
   Contact3Law repulsion;
   TubeSetting tube; /* about bodies of revolution of the fluid's viscosity */
+  ThroatSetting throat;
 } SpaceSetting;
 
 /* What the last step did. */
@@ -60,11 +61,16 @@ typedef struct {
 /* The tube and what the vesicles have of it. */
 typedef struct {
   Tube tube;         /* NULL: none */
+  Throat throat;     /* NULL: none */
   PetscReal *wall;   /* [own][size][rows] factors of the tube's part */
   PetscReal spacing; /* largest of the latitudes of the grids of degree p */
   PetscReal film;    /* least distance of vesicles that have been placed; negative where they overlap */
-  PetscReal least;   /* film that nodes and rings resolve (TubeLeastFilm) */
-  PetscReal thrust;  /* of the membranes' forces on the fluid in the last solve (TubeThrust) */
+  PetscReal least;   /* film that nodes and rings resolve (TubeLeastFilm, ThroatLeastFilm) */
+  PetscReal
+      thrust;      /* of the membranes' forces on the fluid in the last solve: pi R^2 times minus their pressure drop */
+  PetscReal *drag; /* [rows] of the throat (ThroatFlow); NULL: none */
+  PetscReal drop;  /* of the pressure by the throat alone, at the mean velocity 1 (length/time) */
+  PetscReal left;  /* part of the flux in the tube alone that the throat leaves: 1 where the flux is given */
 } SpaceTube;
 
 typedef struct _p_Space *Space;
@@ -138,11 +144,13 @@ PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], Pets
 /* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own mobility, of vesicles
    that have been placed at X[own][size]. Nothing is added where the film is thinner than the least. SpaceMeasureFilm -
    the film of X, where the surfaces are placed, the least one and the spacing. SpaceAddTube - V[own][size] += what the
-   tube makes of the forces F[own][size] on other vesicles. SpaceMeasureThrust - of the membranes' forces, minus work.F.
+   tube makes of the forces F[own][size] on other vesicles. SpaceAddThroatFlow - work.background += what a throat makes
+   of the tube's flow. SpaceMeasureThrust - of the membranes' forces, minus work.F.
    Collective. */
 PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
 PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, const PetscReal F[], PetscReal V[]);
+PETSC_EXTERN PetscErrorCode SpaceAddThroatFlow(Space space);
 PETSC_EXTERN PetscErrorCode SpaceMeasureThrust(Space space);
 
 /* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as

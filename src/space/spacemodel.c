@@ -96,7 +96,7 @@ static PetscErrorCode SpaceMeasureTube(SpaceModel m, PetscReal last[]) {
   const PetscReal R = m->scene->space.tube.radius, P = m->scene->space.tube.period, nu = m->scene->fluid.nu;
   PetscFunctionBeginUser;
   PetscCall(SpaceMeasureFilm(s, s->state.X, &last[SPACE_FILM]));
-  last[SPACE_FLOW] = 0.5 * m->scene->flow.peak + (P > 0 ? s->tube.thrust / (8 * PETSC_PI * nu * P) : 0);
+  last[SPACE_FLOW] = s->tube.left * (s->setting.tube.mean + (P > 0 ? s->tube.thrust / (8 * PETSC_PI * nu * P) : 0));
   last[SPACE_PRESSURE] = -s->tube.thrust / (PETSC_PI * R * R);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -208,6 +208,7 @@ static void SpaceSummary(const void *model, FILE *f) {
   fprintf(f, "  \"totals\": {\"steps\": %d, \"coupled_its\": %d},\n  \"dim\": 3,\n  \"degree\": %d,\n",
           (int)m->space->state.step, (int)m->its, (int)m->space->sphere->p);
   fprintf(f, "  \"vesicles\": %d,\n", (int)m->space->share.vesicles);
+  if (m->space->tube.throat) fprintf(f, "  \"throat_pressure_drop\": %.17g,\n", (double)m->space->tube.drop);
 }
 
 static PetscErrorCode SpaceTable(const void *model, const PetscReal last[]) {

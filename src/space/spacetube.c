@@ -5,11 +5,16 @@
 static PetscErrorCode SpaceTubeExtent(Space s, TubeExtent *extent) {
   PetscFunctionBeginUser;
   *extent = TubeNothing();
-  for (PetscInt v = 0; v < s->share.own; v++) TubeMeasure(s->tube.tube, s->vesicle[v]->at, extent);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->gap, 1, MPIU_REAL, MPI_MIN, s->share.comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->low, 1, MPIU_REAL, MPI_MIN, s->share.comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->stretch, 1, MPIU_REAL, MPI_MAX, s->share.comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent->high, 1, MPIU_REAL, MPI_MAX, s->share.comm));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    TubeMeasure(s->tube.tube, s->vesicle[v]->at, extent);
+    if (s->tube.throat) ThroatMeasure(s->tube.throat, s->vesicle[v]->at, extent);
+  }
+  PetscReal least[] = {extent->gap, extent->film, extent->low, -extent->high, -extent->stretch};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, least, 5, MPIU_REAL, MPI_MIN, s->share.comm));
+  *extent = (TubeExtent){.gap = least[0], .film = least[1], .low = least[2], .high = -least[3], .stretch = -least[4]};
+  s->tube.film = extent->film;
+  s->tube.least = TubeLeastFilm(extent);
+  if (s->tube.throat) s->tube.least = PetscMax(s->tube.least, ThroatLeastFilm(s->tube.throat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -18,9 +23,22 @@ PetscErrorCode SpaceMeasureFilm(Space s, const PetscReal X[], PetscReal *film) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(SurfacePlace(s->vesicle[v]->at, X + v * s->size, PETSC_FALSE));
   PetscCall(SpaceTubeExtent(s, &extent));
-  *film = extent.gap;
-  s->tube.least = TubeLeastFilm(&extent);
+  *film = extent.film;
   s->tube.spacing = extent.stretch * PETSC_PI / (PetscReal)(s->sphere->p + 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The nodes, the rings and the flow of a throat and its tube. */
+static PetscErrorCode SpacePlaceThroat(Space s, const TubeExtent *extent) {
+  const PetscReal period = s->setting.tube.period;
+  PetscReal square;
+  PetscFunctionBeginUser;
+  PetscCall(ThroatPlace(s->tube.throat, s->sphere->p, extent));
+  PetscCall(PetscFree(s->tube.drag));
+  PetscCall(PetscMalloc1(TubeRowCount(s->tube.tube), &s->tube.drag));
+  PetscCall(ThroatFlow(s->tube.throat, s->tube.drag, &square));
+  s->tube.left = period > 0 ? 1 - square / (8 * PETSC_PI * s->tube.tube->nu * period) : 1;
+  s->tube.drop = square / (s->tube.left * PETSC_PI * PetscSqr(s->setting.tube.radius));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,15 +47,17 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
   TubeExtent extent;
   PetscFunctionBeginUser;
   PetscCall(SpaceTubeExtent(s, &extent));
-  s->tube.film = extent.gap;
-  s->tube.least = TubeLeastFilm(&extent);
   if (s->tube.film < s->tube.least) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TubePlace(tube, s->sphere->p, &extent));
+  if (s->tube.throat)
+    PetscCall(SpacePlaceThroat(s, &extent));
+  else
+    PetscCall(TubePlace(tube, s->sphere->p, &extent));
   const PetscInt each = s->size * TubeRowCount(tube);
   PetscCall(PetscFree(s->tube.wall));
   PetscCall(PetscMalloc1(s->share.own * each, &s->tube.wall));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscCall(TubeFactor(tube, X + v * s->size, s->tube.wall + v * each));
+    if (s->tube.throat) PetscCall(ThroatFactor(s->tube.throat, X + v * s->size, s->tube.wall + v * each));
     PetscCall(TubeAddMobility(tube, s->size, s->tube.wall + v * each, s->vesicle[v]->M));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -63,14 +83,42 @@ PetscErrorCode SpaceAddTube(Space s, const PetscReal F[], PetscReal V[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SpaceMeasureThrust(Space s) {
-  PetscReal part;
+PetscErrorCode SpaceAddThroatFlow(Space s) {
+  const PetscInt rows = TubeRowCount(s->tube.tube);
+  PetscReal *flow;
   PetscFunctionBeginUser;
-  s->tube.thrust = 0;
+  PetscCall(PetscMalloc1(rows, &flow));
+  for (PetscInt k = 0; k < rows; k++) flow[k] = s->setting.tube.mean * s->tube.drag[k];
+  for (PetscInt v = 0; v < s->share.own; v++)
+    PetscCall(
+        TubeAddRows(s->tube.tube, s->size, s->tube.wall + v * s->size * rows, flow, s->work.background + v * s->size));
+  PetscCall(PetscFree(flow));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F . T^T drag of forces F on a vesicle, what the throat adds to the tube's thrust. */
+static PetscErrorCode SpaceThroatThrust(Space s, PetscInt v, PetscReal *part) {
+  const PetscInt rows = TubeRowCount(s->tube.tube);
+  PetscReal *row;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(rows, &row));
+  PetscCall(TubeRows(s->tube.tube, s->size, s->tube.wall + v * s->size * rows, 1, s->work.F + v * s->size, row));
+  *part = 0;
+  for (PetscInt k = 0; k < rows; k++) *part += s->tube.drag[k] * row[k];
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceMeasureThrust(Space s) {
+  PetscReal sum = 0, part;
+  PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscCall(TubeThrust(s->tube.tube, s->vesicle[v]->at, s->work.F + v * s->size, &part));
-    s->tube.thrust -= part;
+    sum -= part;
+    if (s->tube.throat) PetscCall(SpaceThroatThrust(s, v, &part));
+    if (s->tube.throat) sum += part;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->tube.thrust, 1, MPIU_REAL, MPI_SUM, s->share.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, s->share.comm));
+  s->tube.thrust = sum / s->tube.left;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,23 +6,8 @@
 #define SMALL 1e-5      /* arguments below which Bessel functions are their first terms */
 #define MOST_RINGS 2048 /* degree of their grid, of which powers of two reach half at least */
 #define LEAST_NODES 160
-#define MOST_NODES 2560
-#define WAVES 4       /* nodes for a length over the gap */
+#define MOST_NODES (TUBE_WAVES * TUBE_MOST_LENGTHS)
 #define NEGLECTED 37. /* of the exponents of an integrand's tail */
-
-/* A node of the quadrature in k: weight, K_0 and K_1 at kR over exp(-kR), and L of G(k, R) = L L^T. */
-typedef struct {
-  PetscReal k, weight, K[2], L[3];
-} TubeNode;
-
-struct _p_Tube {
-  TubeSetting setting;
-  PetscReal nu;
-  PetscInt nodes;
-  PetscReal *u, *w;  /* [nodes] Gauss and Legendre on (0, 1) */
-  TubeNode *node;    /* [nodes] */
-  SphereTable rings; /* of the last degrees; n 0: not made */
-};
 
 /* I_0(x), I_1(x) and I_2(x) over exp(x), by their recurrence from a high order down and exp(x) = I_0 + 2 SUM I_n. */
 static void BesselI(PetscReal x, PetscReal In[3]) {
@@ -92,31 +77,37 @@ PetscErrorCode TubeDestroy(Tube *tube) {
 }
 
 PetscReal TubeLeastFilm(const TubeExtent *extent) {
-  return PetscMax(PETSC_PI * extent->stretch / (0.5 * MOST_RINGS), WAVES * (extent->high - extent->low) / MOST_NODES);
+  return PetscMax(PETSC_PI * extent->stretch / (0.5 * MOST_RINGS), (extent->high - extent->low) / TUBE_MOST_LENGTHS);
 }
 
-/* Nodes close enough for the waves along the whole extent that decay over the gap: LEAST_NODES times a power of two. */
-static PetscErrorCode TubeMakeNodes(Tube t, const TubeExtent *extent) {
+/* Nodes close enough for the waves along the whole extent that decay over the gap: LEAST_NODES times a power of two.
+   They are up to the wave number of the least gap. */
+static PetscErrorCode TubeMakeNodes(Tube t, const TubeExtent *extent, PetscReal least) {
+  const PetscReal along = (extent->high - extent->low) / extent->gap * PetscCbrtReal(extent->gap / least),
+                  waves = PetscMax(along, t->more.length / least);
   PetscInt nodes = LEAST_NODES;
   PetscFunctionBeginUser;
-  while ((PetscReal)nodes * extent->gap < WAVES * (extent->high - extent->low) && nodes < MOST_NODES) nodes *= 2;
+  while ((PetscReal)nodes < TUBE_WAVES * waves && nodes < MOST_NODES) nodes *= 2;
   if (nodes == t->nodes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3(t->u, t->w, t->node));
   PetscCall(PetscMalloc3(nodes, &t->u, nodes, &t->w, nodes, &t->node));
   PetscCall(PetscDTGaussQuadrature(nodes, 0, 1, t->u, t->w));
   t->nodes = nodes;
+  t->waves = 4 * nodes + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscInt TubeRowCount(Tube t) {
-  return 4 * t->nodes + 1;
+void TubeExtend(Tube t, PetscInt rows, PetscReal gap, PetscReal length) {
+  t->more.rows = rows;
+  t->more.gap = gap;
+  t->more.length = length;
 }
 
-/* Rings of degree q, 2p times a power of two, no farther apart than the gap. */
+/* Rings of degree q, 2p times a power of two, no farther apart than the film. */
 static PetscErrorCode TubeMakeRings(Tube t, PetscInt p, const TubeExtent *extent) {
   PetscInt q = 2 * p;
   PetscFunctionBeginUser;
-  while (PETSC_PI * extent->stretch > extent->gap * (PetscReal)(q + 1) && 2 * q <= MOST_RINGS) q *= 2;
+  while (PETSC_PI * extent->stretch > extent->film * (PetscReal)(q + 1) && 2 * q <= MOST_RINGS) q *= 2;
   if (t->rings.grid.n == q + 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (t->rings.grid.n) PetscCall(SphereTableDestroy(&t->rings));
   PetscCall(SphereTableCreate(p, q, SPHERE_REVOLVED, 1, &t->rings));
@@ -124,15 +115,18 @@ static PetscErrorCode TubeMakeRings(Tube t, PetscInt p, const TubeExtent *extent
 }
 
 PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
-  const PetscReal R = t->setting.radius, highest = HIGHEST / extent->gap;
+  const PetscReal R = t->setting.radius;
+  PetscReal least = t->more.rows ? t->more.gap : extent->gap;
   PetscFunctionBeginUser;
+  while (least > extent->gap) least /= 2; /* of walls at rest: it changes seldom */
+  t->highest = HIGHEST / least;
   PetscCall(TubeMakeRings(t, p, extent));
-  PetscCall(TubeMakeNodes(t, extent));
+  PetscCall(TubeMakeNodes(t, extent, least));
   for (PetscInt j = 0; j < t->nodes; j++) { /* k = highest u^3: the integrand has log k at 0 */
     TubeNode *node = &t->node[j];
     PetscReal G[2][2];
-    node->k = highest * t->u[j] * t->u[j] * t->u[j];
-    node->weight = 3 * highest * t->u[j] * t->u[j] * t->w[j] / (PETSC_PI * t->nu);
+    node->k = t->highest * t->u[j] * t->u[j] * t->u[j];
+    node->weight = 3 * t->highest * t->u[j] * t->u[j] * t->w[j] / (PETSC_PI * t->nu);
     BesselK(node->k * R, node->K);
     TubeRing(node, R, R, G);
     node->L[0] = PetscSqrtReal(G[0][0]);
@@ -143,26 +137,29 @@ PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
 }
 
 TubeExtent TubeNothing(void) {
-  return (TubeExtent){.gap = PETSC_MAX_REAL, .low = PETSC_MAX_REAL, .high = PETSC_MIN_REAL};
+  return (TubeExtent){.gap = PETSC_MAX_REAL, .low = PETSC_MAX_REAL, .high = PETSC_MIN_REAL, .film = PETSC_MAX_REAL};
+}
+
+PetscReal TubeLeastBetween(PetscReal before, PetscReal here, PetscReal after) {
+  if (before <= here || after <= here || PetscMax(before, after) == PETSC_MAX_REAL) return here;
+  return here - PetscSqr(after - before) / (8 * (before - 2 * here + after)); /* of a parabola */
 }
 
 void TubeMeasure(Tube t, Surface s, TubeExtent *extent) {
-  const PetscReal *T = s->D[HARMONIC_T], *x = s->D[HARMONIC], *r = x + s->n;
+  const PetscReal *T = s->D[HARMONIC_T], *x = s->D[HARMONIC], *r = x + s->n, R = t->setting.radius;
   for (PetscInt i = 0; i < s->n; i++) {
-    const PetscBool crest = (PetscBool)(i > 0 && i < s->n - 1 && r[i] > r[i - 1] && r[i] > r[i + 1]);
-    PetscReal top = r[i];
-    if (crest) top -= PetscSqr(r[i + 1] - r[i - 1]) / (8 * (r[i + 1] - 2 * r[i] + r[i - 1])); /* of a parabola */
-    extent->gap = PetscMin(extent->gap, t->setting.radius - top);
+    const PetscReal before = i ? R - r[i - 1] : PETSC_MAX_REAL, after = i < s->n - 1 ? R - r[i + 1] : PETSC_MAX_REAL;
+    extent->gap = PetscMin(extent->gap, TubeLeastBetween(before, R - r[i], after));
     extent->low = PetscMin(extent->low, x[i]);
     extent->high = PetscMax(extent->high, x[i]);
     extent->stretch = PetscMax(extent->stretch, PetscSqrtReal(PetscSqr(T[i]) + PetscSqr(T[s->n + i])));
   }
+  extent->film = PetscMin(extent->film, extent->gap);
 }
 
-/* rings[2 n][rows]: what forces along x at each ring are in the rows, then those along r. */
-static void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]) {
+void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]) {
   const PetscReal R = t->setting.radius, P = t->setting.period;
-  const PetscInt rows = TubeRowCount(t);
+  const PetscInt rows = t->waves;
   const PetscReal driven = P > 0 ? PetscSqrtReal(1 / (8 * PETSC_PI * t->nu * P)) : 0;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal r = X[n + i];
@@ -171,8 +168,8 @@ static void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]
       const TubeNode *node = &t->node[j];
       const PetscReal scale = PetscSqrtReal(node->weight) * PetscExpReal(-node->k * (R - r)),
                       c = PetscCosReal(node->k * X[i]), s = PetscSinReal(node->k * X[i]);
-      PetscReal G[2][2];
-      TubeRing(node, R, r, G);
+      PetscReal G[2][2] = {{0, 0}, {0, 0}};
+      if (node->k * (R - r) < NEGLECTED) TubeRing(node, R, r, G);
       for (int ring = 0; ring < 2; ring++) { /* L^-1 G */
         G[0][ring] *= scale / node->L[0];
         G[1][ring] = (scale * G[1][ring] - node->L[1] * G[0][ring]) / node->L[2];
@@ -189,26 +186,42 @@ static void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]
   }
 }
 
-PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[]) {
+PetscErrorCode TubeProject(Tube t, PetscInt rows, const PetscReal rings[], PetscReal T[], PetscInt apart) {
   const SphereTable *table = &t->rings;
-  const PetscInt n = table->grid.n, rows = TubeRowCount(t);
-  PetscReal *X, *rings, *weighted;
+  const PetscInt n = table->grid.n;
+  PetscReal *weighted;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(3 * n, &X, 2 * n * rows, &rings, n * table->component[0].columns, &weighted));
-  PetscCall(SphereFieldValues(table, HARMONIC, c, X));
-  TubeRings(t, n, X, rings);
+  PetscCall(PetscMalloc1(n * table->component[0].columns, &weighted));
   for (int d = 0; d < 2; d++) {
     const FieldComponent *own = &table->component[d];
     for (PetscInt k = 0; k < own->columns * n; k++) weighted[k] = table->grid.weight[k % n] * own->part[HARMONIC][k];
-    PetscCall(DenseProduct(PETSC_FALSE, rows, own->columns, n, rings + d * n * rows, weighted, T + own->first * rows));
+    PetscCall(DenseProductWithin(PETSC_FALSE, (DenseView){rings + d * n * rows, rows, n, rows},
+                                 (DenseView){weighted, n, own->columns, n}, 0, T + own->first * apart, apart));
   }
-  PetscCall(PetscFree3(X, rings, weighted));
+  PetscCall(PetscFree(weighted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[]) {
+  const PetscInt n = t->rings.grid.n, waves = t->waves;
+  PetscReal *X, *rings;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &X, 2 * n * waves, &rings));
+  PetscCall(SphereFieldValues(&t->rings, HARMONIC, c, X));
+  TubeRings(t, n, X, rings);
+  PetscCall(TubeProject(t, waves, rings, T, TubeRowCount(t)));
+  PetscCall(PetscFree2(X, rings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The sign of a row: the wall holds fluid back, and a given pressure drop lets it go. */
 static inline PetscReal TubeSign(Tube t, PetscInt row) {
-  return row == TubeRowCount(t) - 1 ? 1 : -1;
+  return row == t->waves - 1 ? 1 : -1;
+}
+
+void TubeSignRows(Tube t, PetscInt columns, const PetscReal rows[], PetscReal signed_rows[]) {
+  const PetscInt waves = t->waves;
+  for (PetscInt k = 0; k < columns * waves; k++) signed_rows[k] = TubeSign(t, k % waves) * rows[k];
 }
 
 PetscErrorCode TubeAddMobility(Tube t, PetscInt size, const PetscReal T[], PetscReal M[]) {

@@ -21,30 +21,66 @@
 typedef struct {
   PetscReal radius; /* R (length); 0: no tube */
   PetscReal period; /* P (length); 0: the flux is given, not the pressure drop */
+  PetscReal mean;   /* mean velocity of the flow in the tube alone (length/time) */
 } TubeSetting;
 
-typedef struct _p_Tube *Tube;
-
-/* How near bodies of revolution come to the wall, negative where they are outside, how long a meridian is for its angle
-   at most, and from where to where the bodies reach along the axis. */
+/* A node of the quadrature in k: weight, K_0 and K_1 at kR over exp(-kR), and L of G(k, R) = L L^T. */
 typedef struct {
-  PetscReal gap, stretch, low, high;
+  PetscReal k, weight, K[2], L[3];
+} TubeNode;
+
+#define TUBE_WAVES 4          /* nodes for a length over the gap */
+#define TUBE_MOST_LENGTHS 640 /* over the gap */
+
+typedef struct _p_Tube *Tube;
+struct _p_Tube {
+  TubeSetting setting;
+  PetscReal nu;
+  PetscInt nodes, waves; /* waves: rows of T of the tube alone, four a node and one */
+  PetscReal *u, *w;      /* [nodes] Gauss and Legendre on (0, 1) */
+  PetscReal highest;     /* k up to which the nodes are */
+  TubeNode *node;        /* [nodes] */
+  SphereTable rings;     /* of bodies of the last degrees; n 0: not made */
+  struct {
+    PetscInt rows; /* of T, behind those of the tube */
+    PetscReal gap, length;
+  } more; /* walls within the tube: how near they come to it, how long they are along x */
+};
+
+/* How near bodies of revolution come to the tube, negative where they are outside, how long a meridian is for its angle
+   at most, from where to where the bodies reach along the axis, and how near they come to any wall (throat.h). */
+typedef struct {
+  PetscReal gap, stretch, low, high, film;
 } TubeExtent;
 
 /* TubeCreate - of a fluid of viscosity nu. TubeNothing - the extent of no body; TubeMeasure - add one that has been
-   placed. TubeLeastFilm - of this extent: thinner ones take more nodes or rings than
-   there may be. TubePlace - the nodes, as many as the length of the extent over its gap asks for, and rings that are no
-   farther apart than the gap, for bodies of this degree. TubeRowCount - rows of T since then, four a node and one. Not
-   collective. Errors: memory. */
+   placed. TubeLeastBetween - the least of a function near a node, by its values before it, at it and after it.
+   TubeLeastFilm - of this extent: thinner ones take more nodes or rings than there may be. TubePlace - the nodes, as
+   many as the length of the extent over its gap asks for, and rings that are no farther apart than the film, for bodies
+   of this degree. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeCreate(const TubeSetting *setting, PetscReal nu, Tube *tube);
 PETSC_EXTERN PetscErrorCode TubeDestroy(Tube *tube);
 PETSC_EXTERN TubeExtent TubeNothing(void);
 PETSC_EXTERN void TubeMeasure(Tube tube, Surface surface, TubeExtent *extent);
+PETSC_EXTERN PetscReal TubeLeastBetween(PetscReal before, PetscReal here, PetscReal after);
 PETSC_EXTERN PetscReal TubeLeastFilm(const TubeExtent *extent);
 PETSC_EXTERN PetscErrorCode TubePlace(Tube tube, PetscInt p, const TubeExtent *extent);
-PETSC_EXTERN PetscInt TubeRowCount(Tube tube);
 
-/* TubeFactor - T[size][rows] of a body of revolution c[size]. Not collective. Errors: memory. */
+/* TubeExtend - walls within the tube. TubeRowCount - rows of T of the tube and of them. Not collective. */
+PETSC_EXTERN void TubeExtend(Tube tube, PetscInt rows, PetscReal gap, PetscReal length);
+static inline PetscInt TubeRowCount(Tube tube) {
+  return tube->waves + tube->more.rows;
+}
+
+/* TubeRings - rings[2n][waves]: the columns of T of forces 1 along x on n rings X[2][n], x and r, then of those along
+   r. TubeSignRows - signed_rows[columns][waves] = S rows[columns][waves]. TubeProject - T[size][apart], rows numbers
+   each, of a body, by those of its rings, rings[2n][rows]. Not collective. Errors: memory. */
+PETSC_EXTERN void TubeRings(Tube tube, PetscInt n, const PetscReal X[], PetscReal rings[]);
+PETSC_EXTERN void TubeSignRows(Tube tube, PetscInt columns, const PetscReal rows[], PetscReal signed_rows[]);
+PETSC_EXTERN PetscErrorCode TubeProject(Tube tube, PetscInt rows, const PetscReal rings[], PetscReal T[],
+                                        PetscInt apart);
+
+/* TubeFactor - the tube's rows of T[size][rows] of a body of revolution c[size]. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal T[]);
 
 /* TubeAddMobility - M[size][size] += T^T S T, S the signs of the rows. TubeRows - row[rows] += scale T F[size].

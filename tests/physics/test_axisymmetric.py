@@ -83,8 +83,29 @@ def test_two_in_a_tube_on_ranks(tmp_path):
     assert abs(near[0]["velocity_x_2"][-1] - one["velocity_x"][-1]) > 1e-4
 
 
+def test_a_long_throat_is_a_tube(tmp_path):
+    """In the middle of a throat of length 8 a vesicle is as in a tube of the throat's radius."""
+    scene = f"{AXIAL} -flow_type tube -vesicle_bending 1 -vesicle_center -1,0,0 -time_step 0.05 -time_end 0.5"
+    tube = run_petves(tmp_path / "tube", f"{scene} -tube_radius 1.3 -flow_peak_velocity 2").series
+    wide = f"-tube_radius 1.6 -tube_throat 1.3 -tube_throat_length 8 -flow_peak_velocity {2 * (1.3 / 1.6) ** 2}"
+    throat = run_petves(tmp_path / "throat", f"{scene} {wide}").series
+    for column, off in {"velocity_x": 6e-4, "pressure_drop_extra": 1e-3, "film": 2e-4, "energy_bending": 2e-5}.items():
+        assert throat[column][-1] == pytest.approx(tube[column][-1], rel=off), column
+
+
+def test_throat_with_a_given_pressure_drop(tmp_path):
+    """The mean velocity that a pressure drop makes has the same vesicles when it is given, on two ranks too."""
+    scene = f"{AXIAL} -flow_type tube -tube_radius 1.5 -tube_throat 0.95 -sphere_degree 8 -vesicle_bending 1 "
+    scene += "-time_step 0.02 -time_end 0 -vesicle_count 2 -vesicle_center -4,0,0,-0.5,0,0"
+    driven = run_petves(tmp_path / "driven", f"{scene} -tube_period 6 -tube_pressure_drop 40", 2).series
+    given = run_petves(tmp_path / "given", f"{scene} -flow_peak_velocity {2 * driven['mean_velocity'][0]}").series
+    for column in ("velocity_x_1", "velocity_x_2", "pressure_drop_extra", "film"):
+        assert given[column][0] == pytest.approx(driven[column][0], rel=1e-6), column
+
+
 def test_restart_has_the_same_bits(tmp_path):
-    scene = f"{TUBE} -tube_radius 1.3 -sphere_degree 8 -time_step 0.1 -vesicle_count 2 -vesicle_center -1.8,0,0,1.8,0,0"
+    scene = f"{TUBE} -tube_radius 1.3 -tube_throat 1.1 -sphere_degree 8 -time_step 0.1 -vesicle_count 2"
+    scene += " -vesicle_center -1.8,0,0,1.8,0,0"
     whole = run_petves(tmp_path / "whole", f"{scene} -time_end 1")
     run_petves(tmp_path / "half", f"{scene} -time_end 0.5")
     rest = run_petves(tmp_path / "rest", f"{scene} -time_end 1 -restart {tmp_path}/half/checkpoint.h5")

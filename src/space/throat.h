@@ -1,0 +1,44 @@
+/* A throat in a circular tube of radius R about the axis x: along a mouth, of length w, the radius falls to R_t, which
+   it keeps over a length, and along a second mouth it rises again,
+
+       R(x) = R - (R - R_t) (1 + cos(pi s))/2,      s from 0 to 1 along a mouth.
+
+   The wall there is made of rings within the tube, whose forces f on the fluid hold it at rest: A f = -u, A the
+   mobility of rings in the tube, of the free Stokeslets of rings (Pozrikidis 1992) and of T^T S T of tube.h, and u what
+   the vesicles and the flow make at the rings. The rings are equally spaced in x; that a ring acts on itself is the
+   midpoint rule's correction of a logarithm. With A = L L^T and the velocities C at the rings by forces on a vesicle,
+   the throat adds
+
+       -(L^-1 C)^T (L^-1 C)
+
+   to its mobility: L^-1 C are more rows of the vesicle's T. Rings nearer to the tube than a part of their spacing are
+   left out. */
+#pragma once
+#include "space/tube.h"
+
+typedef struct {
+  PetscReal radius, center, length, mouth; /* R_t (0: no throat), x of the middle, of the narrow part, w (lengths) */
+} ThroatSetting;
+
+typedef struct _p_Throat *Throat;
+
+/* ThroatCreate - of a tube, whose rows T it will extend; the tube is borrowed. ThroatRadius - R(x), and dR/dx where
+   slope is not NULL. ThroatMeasure - the film of a body of revolution that has been placed, as TubeMeasure.
+   ThroatLeastFilm: thinner films take more rings than there may be. ThroatPlace - the tube's nodes and rings
+   (TubePlace), and rings of the throat no farther apart than the film. Not collective. Errors: memory; matrices that
+   are not positive definite. */
+PETSC_EXTERN PetscErrorCode ThroatCreate(const ThroatSetting *setting, Tube tube, Throat *throat);
+PETSC_EXTERN PetscErrorCode ThroatDestroy(Throat *throat);
+PETSC_EXTERN PetscReal ThroatRadius(Throat throat, PetscReal x, PetscReal *slope);
+PETSC_EXTERN void ThroatMeasure(Throat throat, Surface surface, TubeExtent *extent);
+PETSC_EXTERN PetscReal ThroatLeastFilm(Throat throat);
+PETSC_EXTERN PetscErrorCode ThroatPlace(Throat throat, PetscInt p, const TubeExtent *extent);
+
+/* ThroatFactor - the throat's rows of T[size][rows], whose other rows TubeFactor has set. Not collective. */
+PETSC_EXTERN PetscErrorCode ThroatFactor(Throat throat, const PetscReal c[], PetscReal T[]);
+
+/* ThroatFlow - drag[rows], L^-1 u_1 in the throat's rows and 0 in the others, u_1 the tube's flow of mean velocity 1:
+   T^T S drag is what the throat adds to that flow. square: the sum of squares, pi R^2 times the pressure drop of the
+   throat at a given flux 1 pi R^2, or, with a given pressure drop, the part 8 pi nu P of the flux that the throat
+   takes. Not collective. */
+PETSC_EXTERN PetscErrorCode ThroatFlow(Throat throat, PetscReal drag[], PetscReal *square);
