@@ -25,6 +25,13 @@ void KindExtend(const Kind *kind, const Pose *at, PetscReal around[4]) {
   }
 }
 
+/* Width of the narrowest channel that a vesicle fits into: of this area and length L, a rectangle with round ends,
+   whose half width is R (1 - sqrt(1 - V)), R = L/(2 pi) and V the reduced area. */
+static PetscReal KindLeastWidth(const Kind *kind) {
+  const PetscReal L = CurveLength(&kind->curve), A = PetscAbsReal(CurveArea(&kind->curve));
+  return (L - PetscSqrtReal(PetscMax(0, L * L - 4 * PETSC_PI * A))) / PETSC_PI;
+}
+
 /* Check that a curve, turned and moved, is between the walls and no longer than a period, before markers are fitted to
    the curve. */
 /* clang-format off */
@@ -38,7 +45,10 @@ static PetscErrorCode VesicleCheckRoom(Scene scene, const Kind *kind, const Pose
   for (int d = 0; d < 2 && f->bc[d] != BC_FREE; d++) {
     const PetscReal *wall = f->box + 2 * d, width = wall[1] - wall[0], low = around[2 * d], high = around[2 * d + 1];
     const PetscBool too_long = high - low > width, walls = f->bc[d] != BC_PERIODIC;
+    const PetscReal least = walls && f->bc[!d] == BC_PERIODIC ? KindLeastWidth(kind) : 0; /* of a channel */
     const SceneRule rules[] = {
+      {width < least,
+       "-domain_box: vesicle %.0f fits into no channel as narrow as %g, that in %c; allowed: above %g, twice R (1 - sqrt(1 - V)), R its length over 2 pi, V its reduced area", {v + 1, width, "xy"[d], least}},
       {too_long && file,
        "-vesicle_file {-vesicle_file}: vesicle %.0f is %g long in %c, -domain_box %g; allowed: one that fits in", {v + 1, high - low, "xy"[d], width}},
       {too_long && by_area,
