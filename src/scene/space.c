@@ -97,8 +97,6 @@ static PetscErrorCode SceneResolveAxial(Draft s) {
      "-flow_type {-flow_type}: with -tube_radius {-tube_radius}; allowed: quiescent and tube"},
     {in_tube && flow == FLOW_TUBE && SceneGiven(s, "-flow_half_width") && s->flow.half_width != tube->radius,
      "-flow_half_width {-flow_half_width}: with -tube_radius {-tube_radius}; allowed: the same number, or none"},
-    {in_tube && SceneHasContrast(s),
-     "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_radius {-tube_radius}; allowed in a tube: 1"},
     {in_tube && tube->throat >= tube->radius,
      "-tube_throat {-tube_throat}: not narrower than the tube; allowed: below -tube_radius {-tube_radius}, or 0"},
     {in_tube && tube->throat > 0 && SceneHasContrast(s),

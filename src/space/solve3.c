@@ -7,9 +7,10 @@
 PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(DenseProduct(PETSC_FALSE, s->size, 1, s->size, s->vesicle[v]->M, F + v * s->size, V + v * s->size));
+    PetscCall(DenseProduct(PETSC_FALSE, s->size, 1, s->size, s->vesicle[v]->S, F + v * s->size, V + v * s->size));
   if (s->cross) PetscCall(CrossLayerAdd(s->cross, F, V));
   if (s->cross && s->tube.tube) PetscCall(SpaceAddTube(s, F, V));
+  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Velocity(s->vesicle[v], 1, V + v * s->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,7 +52,7 @@ static PetscErrorCode SpaceApplyFactors(PC pc, Vec r, Vec z) {
   PetscCall(VecCopy(r, z));
   PetscCall(VecGetArray(z, &x));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(DenseSolve(s->unknowns, s->factor + v * s->unknowns * s->unknowns, s->pivot + v * s->unknowns,
+    PetscCall(DenseSolve(s->unknowns, s->made.matrix + v * s->unknowns * s->unknowns, s->made.pivot + v * s->unknowns,
                          PETSC_FALSE, 1, x + v * s->unknowns));
   PetscCall(VecRestoreArray(z, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,7 +66,7 @@ PetscErrorCode SpaceSolverCreate(Space s) {
       MatCreateShell(s->share.comm, s->share.own * n, s->share.own * n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))SpaceMult));
   PetscCall(MatCreateVecs(s->A, &s->x, &s->b));
-  PetscCall(PetscMalloc2(s->share.own * n * n, &s->factor, s->share.own * n, &s->pivot));
+  PetscCall(PetscMalloc2(s->share.own * n * n, &s->made.matrix, s->share.own * n, &s->made.pivot));
   PetscCall(PetscMalloc2(s->share.own * s->size, &s->made.X, s->share.own * s->count, &s->made.sigma));
   PetscCall(KSPCreate(s->share.comm, &s->ksp));
   PetscCall(KSPSetOptionsPrefix(s->ksp, "coupled_"));
@@ -89,7 +90,7 @@ PetscErrorCode SpaceSolverDestroy(Space s) {
   PetscCall(MatDestroy(&s->A));
   PetscCall(VecDestroy(&s->x));
   PetscCall(VecDestroy(&s->b));
-  PetscCall(PetscFree2(s->factor, s->pivot));
+  PetscCall(PetscFree2(s->made.matrix, s->made.pivot));
   PetscCall(PetscFree2(s->made.X, s->made.sigma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,8 +102,8 @@ static PetscErrorCode SpaceMakeFactors(Space s) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscBool factored;
-    PetscCall(Vesicle3Matrix(s->vesicle[v], s->factor + v * n * n));
-    PetscCall(DenseFactor(n, s->factor + v * n * n, s->pivot + v * n, &factored));
+    PetscCall(Vesicle3Matrix(s->vesicle[v], s->made.matrix + v * n * n));
+    PetscCall(DenseFactor(n, s->made.matrix + v * n * n, s->made.pivot + v * n, &factored));
     if (!factored) good = 0;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
@@ -127,11 +128,14 @@ PetscErrorCode SpaceRecall(Space s) {
   if (s->made.a0 <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt v = 0; v < s->share.own; v++) {
     const PetscReal *X = s->made.X + v * s->size;
-    PetscBool done;
-    PetscCall(Vesicle3Place(s->vesicle[v], X, s->made.sigma + v * s->count, &done));
+    PetscCall(Vesicle3Place(s->vesicle[v], X, s->made.sigma + v * s->count));
     PetscCall(Vesicle3Linearise(s->vesicle[v], s->made.a0, X, X, X));
   }
   if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->made.X));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    PetscBool done;
+    PetscCall(Vesicle3Factor(s->vesicle[v], &done));
+  }
   PetscCall(SpaceMakeFactors(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,6 +45,7 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(PetscMalloc6(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
                          &s->work.V));
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
+  for (PetscInt v = 0; v < vesicles; v++) s->contrast = (PetscBool)(s->contrast || material[v].ratio != 1);
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
   if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, &s->cross));
@@ -63,7 +64,7 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(CrossLayerDestroy(&s->cross));
   PetscCall(TubeDestroy(&s->tube.tube));
   PetscCall(ThroatDestroy(&s->tube.throat));
-  PetscCall(PetscFree(s->tube.wall));
+  PetscCall(PetscFree2(s->tube.wall, s->tube.traction));
   PetscCall(PetscFree(s->tube.drag));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
@@ -135,15 +136,12 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
   for (PetscInt v = 0; v < s->share.own; v++) {
     const Vesicle3 vesicle = s->vesicle[v];
     PetscReal *u;
-    PetscBool done;
-    PetscCall(Vesicle3Place(vesicle, s->work.Xstar + v * s->size, s->state.sigma + v * s->count, &done));
-    if (!done) good = 0;
+    PetscCall(Vesicle3Place(vesicle, s->work.Xstar + v * s->size, s->state.sigma + v * s->count));
     PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
     PetscCall(s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u));
     PetscCall(SphereFieldProject(&s->sphere->fine, u, s->work.background + v * s->size));
     for (PetscInt k = 0; k < s->size; k++)
       if (PetscIsInfOrNanReal(s->work.background[v * s->size + k])) finite = 0;
-    PetscCall(Vesicle3Velocity(vesicle, s->work.background + v * s->size));
     PetscCall(PetscFree(u));
   }
   if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->work.Xstar));
@@ -153,6 +151,14 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
                             (double)s->tube.least));
   else if (s->tube.throat)
     PetscCall(SpaceAddThroatFlow(s));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    PetscBool done;
+    PetscCall(Vesicle3Factor(s->vesicle[v], &done));
+    if (done)
+      PetscCall(Vesicle3Velocity(s->vesicle[v], 1, s->work.background + v * s->size));
+    else
+      good = 0;
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
   if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));

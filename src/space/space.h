@@ -52,25 +52,28 @@ typedef struct {
   PetscReal *Xstar, *Xhat, *Y, *background, *F, *V;
 } SpaceWork;
 
-/* What the factors were made for, of the own vesicles: X* [own][size], the tension that pulled [own][count]. */
+/* The factors of the own vesicles' problems, and what they were made for: X* [own][size], the tension that pulled
+   [own][count]. */
 typedef struct {
-  PetscReal a0; /* 0: none */
+  PetscReal *matrix;   /* [own][unknowns][unknowns] */
+  PetscBLASInt *pivot; /* [own][unknowns] */
+  PetscReal a0;        /* 0: none */
   PetscReal *X, *sigma;
 } SpaceFactors;
 
 /* The tube and what the vesicles have of it. */
 typedef struct {
-  Tube tube;         /* NULL: none */
-  Throat throat;     /* NULL: none */
-  PetscReal *wall;   /* [own][size][rows] factors of the tube's part */
-  PetscReal spacing; /* largest of the latitudes of the grids of degree p */
-  PetscReal film;    /* least distance of vesicles that have been placed; negative where they overlap */
-  PetscReal least;   /* film that nodes and rings resolve (TubeLeastFilm, ThroatLeastFilm) */
-  PetscReal
-      thrust;      /* of the membranes' forces on the fluid in the last solve: pi R^2 times minus their pressure drop */
-  PetscReal *drag; /* [rows] of the throat (ThroatFlow); NULL: none */
-  PetscReal drop;  /* of the pressure by the throat alone, at the mean velocity 1 (length/time) */
-  PetscReal left;  /* part of the flux in the tube alone that the throat leaves: 1 where the flux is given */
+  Tube tube;           /* NULL: none */
+  Throat throat;       /* NULL: none */
+  PetscReal *wall;     /* [own][size][rows] T of the vesicles */
+  PetscReal *traction; /* [own][size][rows] Theta of those whose ratio of viscosities is not 1 */
+  PetscReal spacing;   /* largest of the latitudes of the grids of degree p */
+  PetscReal film;      /* least distance of vesicles that have been placed; negative where they overlap */
+  PetscReal least;     /* film that nodes and rings resolve (TubeLeastFilm, ThroatLeastFilm) */
+  PetscReal thrust;    /* of the vesicles in the last solve: pi R^2 times minus their pressure drop */
+  PetscReal *drag;     /* [rows] of the throat (ThroatFlow); NULL: none */
+  PetscReal drop;      /* of the pressure by the throat alone, at the mean velocity 1 (length/time) */
+  PetscReal left;      /* part of the flux in the tube alone that the throat leaves: 1 where the flux is given */
 } SpaceTube;
 
 typedef struct _p_Space *Space;
@@ -81,6 +84,7 @@ struct _p_Space {
   PetscInt count, size; /* coefficients of a tension, of a field */
   PetscInt unknowns;    /* size + count */
   Vesicle3 *vesicle;    /* [own] */
+  PetscBool contrast;   /* some vesicle's ratio of viscosities is not 1 */
   CrossLayer cross;     /* NULL: one vesicle */
   SpaceTube tube;
   SpaceState state, old[BDF_MOST - 1];
@@ -92,10 +96,8 @@ struct _p_Space {
   SpaceWork work;
   Mat A;
   KSP ksp;
-  Vec x, b;            /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
-  PetscReal *factor;   /* [own][unknowns][unknowns] */
-  PetscBLASInt *pivot; /* [own][unknowns] */
-  Age age;             /* of the factors */
+  Vec x, b; /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
+  Age age;  /* of the factors */
   SpaceFactors made;
 };
 
@@ -137,16 +139,15 @@ PETSC_EXTERN PetscInt SpaceArrays(Space space, SpaceArray array[SPACE_ARRAYS]);
 /* SpaceRecall - the factors of a run that goes on, made again for what they were made for, space->made. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
 
-/* SpaceMobility - V[own][size] = M F of the single layers of all vesicles where they have been placed. Collective.
- */
+/* SpaceMobility - V[own][size] = M F of all vesicles where they have been placed. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
 
-/* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own mobility, of vesicles
+/* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own S and K, of vesicles
    that have been placed at X[own][size]. Nothing is added where the film is thinner than the least. SpaceMeasureFilm -
    the film of X, where the surfaces are placed, the least one and the spacing. SpaceAddTube - V[own][size] += what the
    tube makes of the forces F[own][size] on other vesicles. SpaceAddThroatFlow - work.background += what a throat makes
-   of the tube's flow. SpaceMeasureThrust - of the membranes' forces, minus work.F.
-   Collective. */
+   of the tube's flow. SpaceMeasureThrust - of the membranes' forces, minus work.F, and velocities work.V. Collective.
+ */
 PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
 PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, const PetscReal F[], PetscReal V[]);

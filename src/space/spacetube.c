@@ -53,12 +53,15 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
   else
     PetscCall(TubePlace(tube, s->sphere->p, &extent));
   const PetscInt each = s->size * TubeRowCount(tube);
-  PetscCall(PetscFree(s->tube.wall));
-  PetscCall(PetscMalloc1(s->share.own * each, &s->tube.wall));
+  PetscCall(PetscFree2(s->tube.wall, s->tube.traction));
+  PetscCall(PetscMalloc2(s->share.own * each, &s->tube.wall, s->contrast ? s->share.own * each : 0, &s->tube.traction));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(TubeFactor(tube, X + v * s->size, s->tube.wall + v * each));
-    if (s->tube.throat) PetscCall(ThroatFactor(s->tube.throat, X + v * s->size, s->tube.wall + v * each));
-    PetscCall(TubeAddMobility(tube, s->size, s->tube.wall + v * each, s->vesicle[v]->M));
+    const Vesicle3 vesicle = s->vesicle[v];
+    PetscReal *T = s->tube.wall + v * each, *Theta = vesicle->K ? s->tube.traction + v * each : NULL;
+    PetscCall(TubeFactor(tube, X + v * s->size, T, Theta));
+    if (s->tube.throat) PetscCall(ThroatFactor(s->tube.throat, X + v * s->size, T));
+    PetscCall(TubeAddProduct(tube, s->size, T, 1, T, vesicle->S));
+    if (Theta) PetscCall(TubeAddProduct(tube, s->size, T, vesicle->setting.ratio - 1, Theta, vesicle->K));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -96,13 +99,13 @@ PetscErrorCode SpaceAddThroatFlow(Space s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F . T^T drag of forces F on a vesicle, what the throat adds to the tube's thrust. */
-static PetscErrorCode SpaceThroatThrust(Space s, PetscInt v, PetscReal *part) {
+/* F . T^T drag of forces F[size] on a vesicle, what the throat takes from the tube's thrust. */
+static PetscErrorCode SpaceThroatThrust(Space s, PetscInt v, const PetscReal F[], PetscReal *part) {
   const PetscInt rows = TubeRowCount(s->tube.tube);
   PetscReal *row;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(rows, &row));
-  PetscCall(TubeRows(s->tube.tube, s->size, s->tube.wall + v * s->size * rows, 1, s->work.F + v * s->size, row));
+  PetscCall(TubeRows(s->tube.tube, s->size, s->tube.wall + v * s->size * rows, 1, F, row));
   *part = 0;
   for (PetscInt k = 0; k < rows; k++) *part += s->tube.drag[k] * row[k];
   PetscCall(PetscFree(row));
@@ -110,14 +113,19 @@ static PetscErrorCode SpaceThroatThrust(Space s, PetscInt v, PetscReal *part) {
 }
 
 PetscErrorCode SpaceMeasureThrust(Space s) {
-  PetscReal sum = 0, part;
+  PetscReal sum = 0, part, *on_fluid;
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->size, &on_fluid));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscCall(TubeThrust(s->tube.tube, s->vesicle[v]->at, s->work.F + v * s->size, &part));
+    for (PetscInt k = 0; k < s->size; k++) on_fluid[k] = -s->work.F[v * s->size + k];
+    PetscCall(TubeThrust(s->tube.tube, s->vesicle[v]->at, s->vesicle[v]->setting.ratio, on_fluid,
+                         s->work.V + v * s->size, &part));
+    sum += part;
+    part = 0;
+    if (s->tube.throat) PetscCall(SpaceThroatThrust(s, v, on_fluid, &part));
     sum -= part;
-    if (s->tube.throat) PetscCall(SpaceThroatThrust(s, v, &part));
-    if (s->tube.throat) sum += part;
   }
+  PetscCall(PetscFree(on_fluid));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, s->share.comm));
   s->tube.thrust = sum / s->tube.left;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -171,7 +171,7 @@ static PetscErrorCode ThroatMakeFactor(Throat t) {
   PetscCall(PetscFree3(t->T, t->L, t->drag));
   PetscCall(PetscMalloc3(2 * n * waves, &t->T, 4 * n * n, &t->L, 2 * n, &t->drag));
   PetscCall(PetscMalloc1(2 * n * waves, &own));
-  TubeRings(t->tube, n, t->X, own);
+  TubeRings(t->tube, n, t->X, NULL, own);
   TubeSignRows(t->tube, 2 * n, own, t->T);
   ThroatStokeslets(t, n, t->X, PETSC_TRUE, t->L);
   PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){t->T, waves, 2 * n, waves},

@@ -45,16 +45,31 @@ static void BesselK(PetscReal x, PetscReal K[2]) {
   }
 }
 
-/* G(k, r) exp(k(R - r)) without the factors i, [wall][ring]; I_0 - 2 I_1/x = I_2 keeps the digits of its first entry.
- */
-static void TubeRing(const TubeNode *node, PetscReal R, PetscReal r, PetscReal G[2][2]) {
+/* Parts of a flow at a ring: its velocities, and its stresses over the viscosity. */
+enum { RING_R, RING_X, RING_RR, RING_RX, RING_XX, RING_PARTS };
+
+/* Of the two flows that make the rows of G(k, r) exp(k(R - r)) without the factors i, [wall][part]. Those along r, and
+   stresses along rr and xx, go with cos(kx), the others with sin(kx); the pressure over the viscosity is 2 I_0(kr)
+   times the factor of r I_0(kr) in RING_R. I_0 - 2 I_1/x = I_2 keeps the digits of the first flow. */
+static void TubeRing(const TubeNode *node, PetscReal R, PetscReal r, PetscReal G[2][RING_PARTS]) {
   const PetscReal k = node->k, K0 = node->K[0], K1 = node->K[1], c = 1 / (4 * PETSC_PI * k);
   PetscReal In[3];
   BesselI(k * r, In);
-  G[0][0] = c * k * k * (R * In[1] * K0 - r * In[2] * K1);
-  G[0][1] = -c * k * k * (R * In[0] * K0 - r * In[1] * K1);
-  G[1][0] = -c * k * k * (r * In[0] * K0 - R * In[1] * K1);
-  G[1][1] = In[0] * K0 / (2 * PETSC_PI) + c * k * k * (r * In[1] * K0 - R * In[0] * K1);
+  const PetscReal I1_slope = 0.5 * k * (In[0] + In[2]),
+                  pressure[2] = {-2 * c * k * k * K1 * In[0], -2 * c * k * k * K0 * In[0]};
+  const PetscReal across[2] = {c * k * k * (R * K0 * I1_slope - K1 * (k * r * In[1] - In[2])),
+                               -c * k * k * (K0 * (In[0] + k * r * In[1]) - R * K1 * I1_slope)},
+                  along[2] = {-c * k * k * k * (R * In[1] * K0 - r * In[0] * K1),
+                              k * In[1] * K0 / (2 * PETSC_PI) + c * k * k * k * (r * In[0] * K0 - R * In[1] * K1)};
+  G[0][RING_R] = c * k * k * (R * In[1] * K0 - r * In[2] * K1);
+  G[0][RING_X] = -c * k * k * (R * In[0] * K0 - r * In[1] * K1);
+  G[1][RING_R] = -c * k * k * (r * In[0] * K0 - R * In[1] * K1);
+  G[1][RING_X] = In[0] * K0 / (2 * PETSC_PI) + c * k * k * (r * In[1] * K0 - R * In[0] * K1);
+  for (int wall = 0; wall < 2; wall++) {
+    G[wall][RING_RR] = 2 * across[wall] - pressure[wall];
+    G[wall][RING_RX] = along[wall] - k * G[wall][RING_R];
+    G[wall][RING_XX] = 2 * k * G[wall][RING_X] - pressure[wall];
+  }
 }
 
 PetscErrorCode TubeCreate(const TubeSetting *setting, PetscReal nu, Tube *out) {
@@ -110,7 +125,7 @@ static PetscErrorCode TubeMakeRings(Tube t, PetscInt p, const TubeExtent *extent
   while (PETSC_PI * extent->stretch > extent->film * (PetscReal)(q + 1) && 2 * q <= MOST_RINGS) q *= 2;
   if (t->rings.grid.n == q + 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (t->rings.grid.n) PetscCall(SphereTableDestroy(&t->rings));
-  PetscCall(SphereTableCreate(p, q, SPHERE_REVOLVED, 1, &t->rings));
+  PetscCall(SphereTableCreate(p, q, SPHERE_REVOLVED, HARMONIC_T + 1, &t->rings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,7 +139,7 @@ PetscErrorCode TubePlace(Tube t, PetscInt p, const TubeExtent *extent) {
   PetscCall(TubeMakeNodes(t, extent, least));
   for (PetscInt j = 0; j < t->nodes; j++) { /* k = highest u^3: the integrand has log k at 0 */
     TubeNode *node = &t->node[j];
-    PetscReal G[2][2];
+    PetscReal G[2][RING_PARTS];
     node->k = t->highest * t->u[j] * t->u[j] * t->u[j];
     node->weight = 3 * t->highest * t->u[j] * t->u[j] * t->w[j] / (PETSC_PI * t->nu);
     BesselK(node->k * R, node->K);
@@ -157,32 +172,49 @@ void TubeMeasure(Tube t, Surface s, TubeExtent *extent) {
   extent->film = PetscMin(extent->film, extent->gap);
 }
 
-void TubeRings(Tube t, PetscInt n, const PetscReal X[], PetscReal rings[]) {
+/* The traction over the viscosity of the flow of mean velocity 1, along x and r, at a distance x from where its
+   pressure is 0. */
+static void TubeDrivenTraction(PetscReal R, PetscReal x, PetscReal r, const PetscReal normal[2],
+                               PetscReal traction[2]) {
+  for (int d = 0; d < 2; d++) traction[d] = (8 * x * normal[d] - 4 * r * normal[1 - d]) / (R * R);
+}
+
+/* The two rows of a wave P cos(kx) + Q sin(kx), a quarter of a wave apart; c, s: cos and sin. */
+static inline void TubeWave(PetscReal c, PetscReal s, PetscReal P, PetscReal Q, PetscReal row[2]) {
+  row[0] = c * P + s * Q;
+  row[1] = c * Q - s * P;
+}
+
+void TubeRings(Tube t, PetscInt n, const PetscReal X[], const PetscReal normals[], PetscReal rings[]) {
   const PetscReal R = t->setting.radius, P = t->setting.period;
   const PetscInt rows = t->waves;
   const PetscReal driven = P > 0 ? PetscSqrtReal(1 / (8 * PETSC_PI * t->nu * P)) : 0;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal r = X[n + i];
+    const PetscReal normal[2] = {normals ? normals[i] : 0, normals ? normals[n + i] : 0};
     PetscReal *along = rings + i * rows, *across = rings + (n + i) * rows;
     for (PetscInt j = 0; j < t->nodes; j++) {
       const TubeNode *node = &t->node[j];
       const PetscReal scale = PetscSqrtReal(node->weight) * PetscExpReal(-node->k * (R - r)),
                       c = PetscCosReal(node->k * X[i]), s = PetscSinReal(node->k * X[i]);
-      PetscReal G[2][2] = {{0, 0}, {0, 0}};
+      PetscReal G[2][RING_PARTS] = {{0}};
       if (node->k * (R - r) < NEGLECTED) TubeRing(node, R, r, G);
-      for (int ring = 0; ring < 2; ring++) { /* L^-1 G */
-        G[0][ring] *= scale / node->L[0];
-        G[1][ring] = (scale * G[1][ring] - node->L[1] * G[0][ring]) / node->L[2];
+      for (int part = 0; part < RING_PARTS; part++) { /* L^-1 G */
+        G[0][part] *= scale / node->L[0];
+        G[1][part] = (scale * G[1][part] - node->L[1] * G[0][part]) / node->L[2];
       }
       for (int wall = 0; wall < 2; wall++) {
-        along[4 * j + 2 * wall] = s * G[wall][1];
-        along[4 * j + 2 * wall + 1] = c * G[wall][1];
-        across[4 * j + 2 * wall] = c * G[wall][0];
-        across[4 * j + 2 * wall + 1] = -s * G[wall][0];
+        const PetscReal *g = G[wall];
+        TubeWave(c, s, normals ? g[RING_XX] * normal[0] : 0, normals ? g[RING_RX] * normal[1] : g[RING_X],
+                 along + 4 * j + 2 * wall);
+        TubeWave(c, s, normals ? g[RING_RR] * normal[1] : g[RING_R], normals ? g[RING_RX] * normal[0] : 0,
+                 across + 4 * j + 2 * wall);
       }
     }
-    along[rows - 1] = driven * 2 * (1 - r * r / (R * R));
-    across[rows - 1] = 0;
+    PetscReal flow[2] = {2 * (1 - r * r / (R * R)), 0};
+    if (normals) TubeDrivenTraction(R, X[i] - X[0], r, normal, flow);
+    along[rows - 1] = driven * flow[0];
+    across[rows - 1] = driven * flow[1];
   }
 }
 
@@ -202,15 +234,26 @@ PetscErrorCode TubeProject(Tube t, PetscInt rows, const PetscReal rings[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[]) {
-  const PetscInt n = t->rings.grid.n, waves = t->waves;
-  PetscReal *X, *rings;
+PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[], PetscReal Theta[]) {
+  const SphereTable *table = &t->rings;
+  const PetscInt n = table->grid.n;
+  PetscReal *X, *slope, *rings;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(3 * n, &X, 2 * n * waves, &rings));
-  PetscCall(SphereFieldValues(&t->rings, HARMONIC, c, X));
-  TubeRings(t, n, X, rings);
-  PetscCall(TubeProject(t, waves, rings, T, TubeRowCount(t)));
-  PetscCall(PetscFree2(X, rings));
+  PetscCall(PetscMalloc3(3 * n, &X, 3 * n, &slope, 2 * n * t->waves, &rings));
+  PetscCall(SphereFieldValues(table, HARMONIC, c, X));
+  TubeRings(t, n, X, NULL, rings);
+  PetscCall(TubeProject(t, t->waves, rings, T, TubeRowCount(t)));
+  if (Theta) {
+    PetscCall(SphereFieldValues(table, HARMONIC_T, c, slope));
+    for (PetscInt i = 0; i < n; i++) { /* the normal times dA/domega and the viscosity, from the slopes of x and r */
+      const PetscReal scale = t->nu * X[n + i] / PetscSinReal(table->grid.theta[i]), along = scale * slope[n + i];
+      slope[n + i] = -scale * slope[i];
+      slope[i] = along;
+    }
+    TubeRings(t, n, X, slope, rings);
+    PetscCall(TubeProject(t, t->waves, rings, Theta, TubeRowCount(t)));
+  }
+  PetscCall(PetscFree3(X, slope, rings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,13 +267,14 @@ void TubeSignRows(Tube t, PetscInt columns, const PetscReal rows[], PetscReal si
   for (PetscInt k = 0; k < columns * waves; k++) signed_rows[k] = TubeSign(t, k % waves) * rows[k];
 }
 
-PetscErrorCode TubeAddMobility(Tube t, PetscInt size, const PetscReal T[], PetscReal M[]) {
+PetscErrorCode TubeAddProduct(Tube t, PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal A[],
+                              PetscReal M[]) {
   const PetscInt rows = TubeRowCount(t);
   const DenseView factor = {T, rows, size, rows};
   PetscReal *with_sign;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(size * rows, &with_sign));
-  for (PetscInt k = 0; k < size * rows; k++) with_sign[k] = TubeSign(t, k % rows) * T[k];
+  for (PetscInt k = 0; k < size * rows; k++) with_sign[k] = scale * TubeSign(t, k % rows) * A[k];
   PetscCall(DenseProductWithin(PETSC_TRUE, factor, (DenseView){with_sign, rows, size, rows}, 1, M, size));
   PetscCall(PetscFree(with_sign));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -254,16 +298,24 @@ PetscErrorCode TubeAddRows(Tube t, PetscInt size, const PetscReal T[], const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TubeThrust(Tube t, Surface s, const PetscReal F[], PetscReal *thrust) {
+PetscErrorCode TubeThrust(Tube t, Surface s, PetscReal ratio, const PetscReal F[], const PetscReal U[],
+                          PetscReal *thrust) {
   const SphereTable *table = &s->sphere->fine;
-  const PetscReal *r = s->D[HARMONIC] + s->n;
-  PetscReal *f;
+  const PetscReal *x = s->D[HARMONIC], *r = x + s->n;
+  PetscReal *f, *u;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * s->n, &f));
+  PetscCall(PetscMalloc2(3 * s->n, &f, 3 * s->n, &u));
   PetscCall(SphereFieldValues(table, HARMONIC, F, f));
+  PetscCall(SphereFieldValues(table, HARMONIC, U, u));
   *thrust = 0;
   for (PetscInt i = 0; i < s->n; i++)
     *thrust += table->grid.weight[i] * f[i] * 2 * (1 - PetscSqr(r[i] / t->setting.radius));
-  PetscCall(PetscFree(f));
+  for (PetscInt i = 0; i < s->n && ratio != 1; i++) {
+    PetscReal traction[2];
+    TubeDrivenTraction(t->setting.radius, x[i] - x[0], r[i], (PetscReal[]){s->normal[i], s->normal[s->n + i]},
+                       traction);
+    *thrust += (1 - ratio) * t->nu * table->grid.weight[i] * s->J[i] * (traction[0] * u[i] + traction[1] * u[s->n + i]);
+  }
+  PetscCall(PetscFree2(f, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,7 +14,14 @@
    real part or its imaginary one.
 
    With a given pressure drop over a period, forces f drive a mean velocity (f . u_1)/(8 pi nu P) too, u_1 the flow of
-   mean velocity 1 and P the period: one more row of T, of the other sign. */
+   mean velocity 1 and P the period: one more row of T, of the other sign.
+
+   A row of T has what a flow t, which is regular in the tube, does to a body's forces. With its traction tau on the
+   body and S the signs of the rows, the double layer of velocities U has of the wall
+
+       D_W = -T^T S Theta,     Theta U = INT tau . U dA:
+
+   for a flow U inside the body, W times its traction and D_W U are nothing together, as in the reciprocal theorem. */
 #pragma once
 #include "sphere/surface.h"
 
@@ -73,24 +80,29 @@ static inline PetscInt TubeRowCount(Tube tube) {
 }
 
 /* TubeRings - rings[2n][waves]: the columns of T of forces 1 along x on n rings X[2][n], x and r, then of those along
-   r. TubeSignRows - signed_rows[columns][waves] = S rows[columns][waves]. TubeProject - T[size][apart], rows numbers
-   each, of a body, by those of its rings, rings[2n][rows]. Not collective. Errors: memory. */
-PETSC_EXTERN void TubeRings(Tube tube, PetscInt n, const PetscReal X[], PetscReal rings[]);
+   r; where normals[2][n] are given (NULL: not), of velocities there by the tractions over the viscosity. TubeSignRows -
+   signed_rows[columns][waves] = S rows[columns][waves]. TubeProject - T[size][apart], rows numbers each, of a body, by
+   those of its rings, rings[2n][rows]. Not collective. Errors: memory. */
+PETSC_EXTERN void TubeRings(Tube tube, PetscInt n, const PetscReal X[], const PetscReal normals[], PetscReal rings[]);
 PETSC_EXTERN void TubeSignRows(Tube tube, PetscInt columns, const PetscReal rows[], PetscReal signed_rows[]);
 PETSC_EXTERN PetscErrorCode TubeProject(Tube tube, PetscInt rows, const PetscReal rings[], PetscReal T[],
                                         PetscInt apart);
 
-/* TubeFactor - the tube's rows of T[size][rows] of a body of revolution c[size]. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal T[]);
+/* TubeFactor - the tube's rows of T[size][rows] of a body of revolution c[size], and of Theta[size][rows] (NULL: not
+   wanted). Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal T[], PetscReal Theta[]);
 
-/* TubeAddMobility - M[size][size] += T^T S T, S the signs of the rows. TubeRows - row[rows] += scale T F[size].
+/* TubeAddProduct - M[size][size] += scale T^T S A, A[size][rows]. TubeRows - row[rows] += scale T F[size].
    TubeAddRows - U[size] += T^T S row. Not collective. */
-PETSC_EXTERN PetscErrorCode TubeAddMobility(Tube tube, PetscInt size, const PetscReal T[], PetscReal M[]);
+PETSC_EXTERN PetscErrorCode TubeAddProduct(Tube tube, PetscInt size, const PetscReal T[], PetscReal scale,
+                                           const PetscReal A[], PetscReal M[]);
 PETSC_EXTERN PetscErrorCode TubeRows(Tube tube, PetscInt size, const PetscReal T[], PetscReal scale,
                                      const PetscReal F[], PetscReal row[]);
 PETSC_EXTERN PetscErrorCode TubeAddRows(Tube tube, PetscInt size, const PetscReal T[], const PetscReal row[],
                                         PetscReal U[]);
 
-/* TubeThrust - F . u_1 of forces F[size] on the fluid by a body of revolution where it has been placed: -pi R^2 times
-   the pressure drop that they add, by the reciprocal theorem. Not collective. */
-PETSC_EXTERN PetscErrorCode TubeThrust(Tube tube, Surface surface, const PetscReal F[], PetscReal *thrust);
+/* TubeThrust - F . u_1 + (1 - ratio) INT tau_1 . U dA of forces F[size] on the fluid and velocities U[size] of a body
+   of revolution where it has been placed, tau_1 the traction of u_1, ratio that of the viscosity inside to that of the
+   fluid: -pi R^2 times the pressure drop that the body adds, by the reciprocal theorem. Not collective. */
+PETSC_EXTERN PetscErrorCode TubeThrust(Tube tube, Surface surface, PetscReal ratio, const PetscReal F[],
+                                       const PetscReal U[], PetscReal *thrust);

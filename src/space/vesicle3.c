@@ -20,9 +20,9 @@ PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, con
   PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
   v->area = v->at->area;
   v->volume = v->at->volume;
-  PetscCall(PetscMalloc3(size * size, &v->M, n * size, &v->rows, n * size, &v->columns));
+  PetscCall(PetscMalloc3(size * size, &v->S, n * size, &v->rows, n * size, &v->columns));
   PetscCall(PetscCalloc3(size * size, &v->pull, size, &v->clean, size, &v->known));
-  if (setting->ratio != 1) PetscCall(PetscMalloc2(size * size, &v->inverse, size, &v->pivot));
+  if (setting->ratio != 1) PetscCall(PetscMalloc2(size * size, &v->K, size, &v->pivot));
   for (PetscInt k = 0; k < size; k++)
     v->clean[k] = setting->label_rate * PetscPowRealInt((PetscReal)sphere->degree[k] / sphere->p, 4);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -34,34 +34,37 @@ PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle) {
   if (!v) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfaceDestroy(&v->at));
   PetscCall(SurfaceDestroy(&v->about));
-  PetscCall(PetscFree3(v->M, v->rows, v->columns));
+  PetscCall(PetscFree3(v->S, v->rows, v->columns));
   PetscCall(PetscFree3(v->pull, v->clean, v->known));
-  PetscCall(PetscFree2(v->inverse, v->pivot));
+  PetscCall(PetscFree2(v->K, v->pivot));
   PetscCall(PetscFree(*vesicle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* M = [(1 + ratio)/2 + (1 - ratio) D]^-1 S, S the single layer. */
-static PetscErrorCode Vesicle3PlaceMobility(Vesicle3 v, const PetscReal Xstar[], PetscBool *done) {
+static PetscErrorCode Vesicle3PlaceLayers(Vesicle3 v, const PetscReal Xstar[]) {
   const PetscReal ratio = v->setting.ratio;
   PetscFunctionBeginUser;
-  *done = PETSC_TRUE;
-  PetscCall(SphereSingleLayer(v->at->sphere, v->setting.nu, Xstar, v->M));
+  PetscCall(SphereSingleLayer(v->at->sphere, v->setting.nu, Xstar, v->S));
   if (ratio == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SphereLayerMatrix(v->at->sphere, &Stresslet3, Xstar, v->inverse));
+  PetscCall(SphereLayerMatrix(v->at->sphere, &Stresslet3, Xstar, v->K));
   for (PetscInt k = 0; k < v->size * v->size; k++)
-    v->inverse[k] = (1 - ratio) * v->inverse[k] + (k % (v->size + 1) ? 0 : (1 + ratio) / 2);
-  PetscCall(DenseFactor(v->size, v->inverse, v->pivot, done));
-  if (*done) PetscCall(DenseSolve(v->size, v->inverse, v->pivot, PETSC_FALSE, v->size, v->M));
+    v->K[k] = (1 - ratio) * v->K[k] + (k % (v->size + 1) ? 0 : (1 + ratio) / 2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscReal sigma[], PetscBool *done) {
+PetscErrorCode Vesicle3Factor(Vesicle3 v, PetscBool *done) {
+  PetscFunctionBeginUser;
+  *done = PETSC_TRUE;
+  if (v->K) PetscCall(DenseFactor(v->size, v->K, v->pivot, done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscReal sigma[]) {
   const PetscInt count = v->count, size = v->size;
   PetscReal *N, *A;
   PetscFunctionBeginUser;
   PetscCall(SurfacePlace(v->at, Xstar, PETSC_TRUE));
-  PetscCall(Vesicle3PlaceMobility(v, Xstar, done));
+  PetscCall(Vesicle3PlaceLayers(v, Xstar));
   PetscCall(PetscMalloc2(size * size, &N, size * count, &A));
   PetscCall(SurfaceNormals(v->at, N));
   PetscCall(SurfaceAreaRows(v->at, A));
@@ -131,9 +134,9 @@ PetscErrorCode Vesicle3Force(Vesicle3 v, const PetscReal x[], PetscReal F[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscReal U[]) {
+PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscInt columns, PetscReal U[]) {
   PetscFunctionBeginUser;
-  if (v->inverse) PetscCall(DenseSolve(v->size, v->inverse, v->pivot, PETSC_FALSE, 1, U));
+  if (v->K) PetscCall(DenseSolve(v->size, v->K, v->pivot, PETSC_FALSE, columns, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,12 +254,14 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
 
 PetscErrorCode Vesicle3Matrix(Vesicle3 v, PetscReal B[]) {
   const PetscInt size = v->size, n = v->unknowns;
-  PetscReal *LM, trace = 0;
+  PetscReal *M, *LM, trace = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * size, &LM));
-  PetscCall(DenseProduct(PETSC_FALSE, n, size, size, v->rows, v->M, LM));
+  PetscCall(PetscMalloc2(size * size, &M, n * size, &LM));
+  PetscCall(PetscArraycpy(M, v->S, size * size));
+  PetscCall(Vesicle3Velocity(v, size, M));
+  PetscCall(DenseProduct(PETSC_FALSE, n, size, size, v->rows, M, LM));
   PetscCall(DenseProduct(PETSC_FALSE, n, n, size, LM, v->columns, B));
-  PetscCall(PetscFree(LM));
+  PetscCall(PetscFree2(M, LM));
   for (PetscInt k = 0; k < n * n; k++) B[k] = -B[k];
   for (PetscInt l = 0; l < size; l++) {
     const PetscReal clean = v->clean[l] / v->a0;

@@ -11,7 +11,8 @@
        U = u_inf - M F,                                      M the mobility of all vesicles,
        Q + (gamma/a0) P_t Lambda Q - P_n U = P_t rigid - gamma P_t Lambda Xhat,      A U = r,
 
-   F the membrane's resistance, minus its force on the fluid, w the weight of a volume; P_n = n n., P_t = 1 - P_n.
+   M = K^-1 S of one vesicle, S the single layer and K = (1 + ratio)/2 + (1 - ratio) D with the double layer D, F the
+   membrane's resistance, minus its force on the fluid, w the weight of a volume; P_n = n n., P_t = 1 - P_n.
    Labels follow the normal motion; tangentially they go with the rigid part of the last normal velocity, and Lambda =
    (l/p)^4 draws them to a clean spectrum at the rate gamma. r is zero but for the target of the whole area. */
 #pragma once
@@ -34,8 +35,8 @@ struct _p_Vesicle3 {
   PetscInt unknowns;      /* size + count */
   Surface at;             /* X* */
   Surface about;          /* Y */
-  PetscReal *M;           /* [size][size] own mobility */
-  PetscReal *inverse;     /* [size][size] of (1 + ratio)/2 + (1 - ratio) D, factored; NULL where the ratio is 1 */
+  PetscReal *S;           /* [size][size] own single layer */
+  PetscReal *K;           /* [size][size], factored; NULL where the ratio is 1 */
   PetscBLASInt *pivot;    /* [size] of it */
   PetscReal *rows;        /* [size][unknowns] L = -[P_n; A] */
   PetscReal *columns;     /* [unknowns][size] C */
@@ -50,22 +51,22 @@ PETSC_EXTERN PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting 
                                            Vesicle3 *vesicle);
 PETSC_EXTERN PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle);
 
-/* Vesicle3Place - surface, mobility, rows and pull at X*[size]; sigma[count]: the last tension. done:
-   the mobility could be made. Vesicle3Linearise - columns and known about Y[size], for a0 and Xhat[size]. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode Vesicle3Place(Vesicle3 vesicle, const PetscReal Xstar[], const PetscReal sigma[],
-                                          PetscBool *done);
+/* Vesicle3Place - surface, S, K, rows and pull at X*[size]; sigma[count]: the last tension. Vesicle3Factor - factor K,
+   when a tube has been added to it; done: it is not singular. Vesicle3Linearise - columns and known about Y[size], for
+   a0 and Xhat[size]. Not collective. */
+PETSC_EXTERN PetscErrorCode Vesicle3Place(Vesicle3 vesicle, const PetscReal Xstar[], const PetscReal sigma[]);
+PETSC_EXTERN PetscErrorCode Vesicle3Factor(Vesicle3 vesicle, PetscBool *done);
 PETSC_EXTERN PetscErrorCode Vesicle3Linearise(Vesicle3 vesicle, PetscReal a0, const PetscReal Xhat[],
                                               const PetscReal Xstar[], const PetscReal Y[]);
 
 /* Vesicle3AddKnown - known += G[size], the gradient of another energy. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3AddKnown(Vesicle3 vesicle, const PetscReal G[]);
 
-/* Vesicle3Force - F[size] = C x, x[unknowns]. Vesicle3Velocity - U[size] becomes that of a membrane with this ratio of
-   viscosities from what equal ones would make, U := inverse U. Vesicle3Rows - y[unknowns] = L U + what the rows have of
-   x alone (NULL: nothing). Not collective. */
+/* Vesicle3Force - F[size] = C x, x[unknowns]. Vesicle3Velocity - U := K^-1 U, columns U[columns][size], becomes the
+   velocity with this ratio of viscosities from that of equal ones. Vesicle3Rows - y[unknowns] = L U + what the rows
+   have of x alone (NULL: nothing). Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Force(Vesicle3 vesicle, const PetscReal x[], PetscReal F[]);
-PETSC_EXTERN PetscErrorCode Vesicle3Velocity(Vesicle3 vesicle, PetscReal U[]);
+PETSC_EXTERN PetscErrorCode Vesicle3Velocity(Vesicle3 vesicle, PetscInt columns, PetscReal U[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Rows(Vesicle3 vesicle, const PetscReal x[], const PetscReal U[], PetscReal y[]);
 
 /* Vesicle3Target - b[unknowns], the right-hand sides, without those of u_inf: the labels' rigid part by the last

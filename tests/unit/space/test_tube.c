@@ -1,4 +1,5 @@
-/* The wall of a circular tube: the drag of a sphere on its axis, and what the fluid does far from it. */
+/* The wall of a circular tube: the drag of a sphere on its axis, what the fluid does far from it, and other fluid
+   inside of bodies. */
 #include "facts.h"
 #include "numerics/blas.h"
 #include "space/throat.h"
@@ -15,8 +16,8 @@ static void TubeSphere(Tube tube, PetscReal a, PetscReal x, PetscReal c[], Petsc
   c[sphere->p + 1] = a * PetscSqrtReal(8 * PETSC_PI / 3);
   TestCall(SphereSingleLayer(sphere, 1, c, M));
   TestCall(SurfacePlace(surface, c, PETSC_FALSE));
-  TestCall(TubeFactor(tube, c, T));
-  TestCall(TubeAddMobility(tube, sphere->size, T, M));
+  TestCall(TubeFactor(tube, c, T, NULL));
+  TestCall(TubeAddProduct(tube, sphere->size, T, 1, T, M));
 }
 
 /* Drag over 6 pi a of a sphere: the force of a motion by 1, a least eigenvalue apart, which is the pressure inside. */
@@ -54,6 +55,78 @@ static void ThroatDrops(void) {
   }
 }
 
+/* Of a flow inside a body, by a unit force on the axis outside of it, what the wall has of its velocities and of its
+   tractions is the same in each row, as in the reciprocal theorem. */
+static void CheckTraction(Tube tube, PetscReal nu, const PetscReal T[], const PetscReal Theta[]) {
+  const PetscInt n = surface->n, rows = TubeRowCount(tube);
+  const PetscReal *X = surface->D[HARMONIC], x0 = X[0] + 0.9;
+  PetscReal *u = TestReals(3 * n), *f = TestReals(3 * n), *U = TestReals(sphere->size), *F = TestReals(sphere->size),
+            *row = TestReals(rows), *other = TestReals(rows), off = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal d[3] = {X[i] - x0, X[n + i], 0}, r = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+    const PetscReal along = d[0] * surface->normal[i] + d[1] * surface->normal[n + i];
+    for (int k = 0; k < 2; k++) {
+      u[k * n + i] = ((k ? 0 : 1 / r) + d[0] * d[k] / (r * r * r)) / (8 * PETSC_PI * nu);
+      f[k * n + i] = -3 * d[0] * d[k] * along / (4 * PETSC_PI * PetscPowRealInt(r, 5)) * surface->J[i];
+    }
+  }
+  TestCall(SphereFieldProject(&sphere->fine, u, U));
+  TestCall(SphereFieldProject(&sphere->fine, f, F));
+  for (PetscInt k = 0; k < rows; k++) row[k] = other[k] = 0;
+  TestCall(TubeRows(tube, sphere->size, T, 1, F, row));
+  TestCall(TubeRows(tube, sphere->size, Theta, 1, U, other));
+  for (PetscInt k = 0; k < rows; k++) off = PetscMax(off, PetscAbsReal(row[k] - other[k]));
+  CHECK(off < 1e-7 * TestFar(rows, row, NULL), "tractions of the wall's flows, relative error %.1e",
+        off / TestFar(rows, row, NULL));
+}
+
+/* A body of fluid of another viscosity that forces pull: the sphere of a very viscous one has the drag of a solid, and
+   the forces that would move the fluid outside alone as the body does have its thrust. */
+static void CheckFluidInside(PetscReal R, PetscReal a, PetscReal aspect, PetscReal ratio, PetscReal drag) {
+  const PetscInt size = sphere->size;
+  const PetscReal nu = 0.7, along = a * aspect;
+  Tube tube;
+  TestCall(TubeCreate(&(TubeSetting){.radius = R, .period = drag > 0 ? 0 : 4}, nu, &tube));
+  TestCall(TubePlace(tube, sphere->p, &(TubeExtent){R - a, along, -along, along, R - a}));
+  const PetscInt rows = TubeRowCount(tube);
+  PetscReal *c = TestReals(size), *S = TestReals(size * size), *K = TestReals(size * size), *T = TestReals(size * rows),
+            *Theta = TestReals(size * rows), *F = TestReals(size), *U = TestReals(size), *outside = TestReals(size),
+            thrust[2];
+  PetscBLASInt *pivot = (PetscBLASInt *)TestReals(size);
+  PetscBool factored;
+  SurfaceSpheroid(sphere->p, along, a, c);
+  c[0] = 3 * PetscSqrtReal(4 * PETSC_PI);
+  TestCall(SurfacePlace(surface, c, PETSC_FALSE));
+  TestCall(SphereSingleLayer(sphere, nu, c, S));
+  TestCall(SphereLayerMatrix(sphere, &Stresslet3, c, K));
+  TestCall(TubeFactor(tube, c, T, Theta));
+  CheckTraction(tube, nu, T, Theta);
+  TestCall(TubeAddProduct(tube, size, T, 1, T, S));
+  TestCall(TubeAddProduct(tube, size, T, -1, Theta, K));
+  for (PetscInt k = 0; k < size * size; k++) K[k] = (1 - ratio) * K[k] + (k % (size + 1) ? 0 : (1 + ratio) / 2);
+  TestCall(DenseFactor(size, K, pivot, &factored));
+  F[0] = 1;
+  F[2] = 0.3;
+  F[sphere->p + 2] = -0.4;
+  TestCall(DenseMultAdd(PETSC_FALSE, size, size, 1, S, F, U));
+  TestCall(DenseSolve(size, K, pivot, PETSC_FALSE, 1, U));
+  if (drag > 0) {
+    const PetscReal D = F[0] * 4 * PETSC_PI / U[0] / (6 * PETSC_PI * nu * a);
+    CHECK(PetscAbsReal(D / drag - 1) < 1e-4, "viscosity %g times inside: drag %.6f, %.6f wanted", ratio, D, drag);
+  }
+  for (PetscInt k = 0; k < size; k++) {
+    outside[k] = U[k];
+    S[k * (size + 1)] += 1e-12; /* the pressure inside does nothing */
+  }
+  TestCall(DenseFactor(size, S, pivot, &factored));
+  TestCall(DenseSolve(size, S, pivot, PETSC_FALSE, 1, outside));
+  TestCall(TubeThrust(tube, surface, ratio, F, U, &thrust[0]));
+  TestCall(TubeThrust(tube, surface, 1, outside, U, &thrust[1]));
+  CHECK(PetscAbsReal(thrust[0] / thrust[1] - 1) < 1e-5,
+        "viscosity %g times inside: thrust %.8f, by forces outside %.8f", ratio, thrust[0], thrust[1]);
+  TestCall(TubeDestroy(&tube));
+}
+
 void Facts(void) {
   static const PetscReal ratio[] = {0.1, 0.2, 0.3, 0.5}, drag[] = {1.26321, 1.67948, 2.37009, 5.94737};
   const PetscReal R = 1.7;
@@ -79,13 +152,16 @@ void Facts(void) {
   TubeSphere(tube, 0.2 * R, 0, c, M, T);
   F[0] = 1;
   PetscReal thrust, *U = TestReals(sphere->size);
-  TestCall(TubeThrust(tube, surface, F, &thrust));
+  TestCall(TubeThrust(tube, surface, 1, F, U, &thrust));
   TestCall(DenseMultAdd(PETSC_FALSE, sphere->size, sphere->size, 1, M, F, U));
   const PetscReal mean = thrust / (8 * PETSC_PI * 1e-6);
   CHECK(PetscAbsReal(TestProduct(sphere->size, F, U) / (mean * thrust) - 1) < 1e-5,
         "over a short period forces drive the mean flow, %.1e", TestProduct(sphere->size, F, U) / (mean * thrust) - 1);
   TestCall(TubeDestroy(&tube));
   ThroatDrops();
+  for (int q = 0; q < 3; q++) CheckFluidInside(R, ratio[q] * R, 1, 1e5, drag[q]);
+  CheckFluidInside(R, 0.6 * R, 1.4, 5, 0);
+  CheckFluidInside(R, 0.6 * R, 0.7, 0.2, 0);
   TestCall(SurfaceDestroy(&surface));
   TestCall(SphereDestroy(&sphere));
 }
