@@ -23,10 +23,25 @@ static PetscErrorCode ContactAreas(const NearPatch *p, PetscInt count, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* psi, and the factors a = psi'/r and b = psi''/r^2 of an entry, for areas of 1. */
+static PetscReal ContactLaw(const Contact3Law *law, PetscReal r, NearEntry *e) {
+  const PetscReal D = law->range, B = law->band, scale = 1 / (2 * PETSC_PI), x = (r - D) / B;
+  e->a = e->b = 0;
+  if (r < D) {
+    e->a = -scale * law->stress / (r * r * r);
+    e->b = 2 * scale * law->stress / (r * r * r * r * r);
+    return scale * law->stress * (1 / r - 1 / D);
+  }
+  const PetscReal pull = 30 * law->adhesion / B * PetscSqr(x * (1 - x)),
+                  slope = 60 * law->adhesion / (B * B) * x * (1 - x) * (1 - 2 * x);
+  e->a = scale * (pull / r - slope) / (r * r);
+  return -scale * pull / r;
+}
+
 PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const PetscReal J1[], const PetscReal J2[],
                               Contact3 *c) {
-  const NearLevel *l = ContactLevel(pair, law->range);
-  const PetscReal D = law->range;
+  const PetscReal reach = law->range + (law->adhesion > 0 ? law->band : 0);
+  const NearLevel *l = ContactLevel(pair, reach);
   PetscReal *area[2];
   PetscInt room = 0;
   PetscFunctionBeginUser;
@@ -36,16 +51,15 @@ PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const Petsc
   PetscCall(PetscMalloc2(a->n, &area[0], b->n, &area[1]));
   PetscCall(ContactAreas(a, pair->sphere->count, J1, area[0]));
   PetscCall(ContactAreas(b, pair->sphere->count, J2, area[1]));
-  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance2(l, &l->entry[k]) < D * D;
+  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance2(l, &l->entry[k]) < reach * reach;
   PetscCall(PetscMalloc1(room, &c->entry));
   for (PetscInt k = 0; k < l->entries; k++) {
     const NearEntry *e = &l->entry[k];
-    const PetscReal r = PetscSqrtReal(NearEntryDistance2(l, e)),
-                    both = law->stress / (2 * PETSC_PI) * area[0][e->i] * area[1][e->j];
-    if (r >= D) continue;
-    c->energy += both * (1 / r - 1 / D);
-    c->entry[c->entries++] = (NearEntry){
-        .i = e->i, .j = e->j, .a = -both / (r * r * r), .b = 2 * both / (r * r * r * r * r)};
+    const PetscReal r = PetscSqrtReal(NearEntryDistance2(l, e)), both = area[0][e->i] * area[1][e->j];
+    if (r >= reach) continue;
+    NearEntry *own = &c->entry[c->entries++];
+    c->energy += both * ContactLaw(law, r, own);
+    *own = (NearEntry){.i = e->i, .j = e->j, .a = both * own->a, .b = both * own->b};
   }
   PetscCall(PetscFree2(area[0], area[1]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,15 +1,20 @@
-/* Repulsion of near surfaces: between areas dA and dA' at a distance r below the range D the energy
+/* Contact of near surfaces: between areas dA and dA' at a distance r the energy
 
-       psi(r) dA dA',     psi = K (1 - r/D)/(2 pi r),
+       psi(r) dA dA',     psi = s(r)/(2 pi r),
 
-   with which parallel planes at a distance z push one another with the stress K (1 - z/D), as membranes of the plane
-   do. Forces are the gradient of the sum over pairs of points on one of the grids of a NearPair, so that the two
-   surfaces' forces are opposite. A step takes the stiffness psi'' along r with it. */
+   with which parallel planes at a distance z push one another with the stress s(z), as membranes of the plane do:
+
+       s = K (1 - z/D) below the range D,     s = -30 (W/B) x^2 (1 - x)^2,  x = (z - D)/B,  from D to D + B.
+
+   Planes that adhere have the energy -W an area. Forces are the gradient of the sum over pairs of points on one of the
+   grids of a NearPair, so that the two surfaces' forces are opposite. A step takes the stiffness psi'' along r of
+   repulsion with it. */
 #pragma once
 #include "space/nearlayer.h"
 
 typedef struct {
-  PetscReal stress, range; /* K (length^2/time^2), 0: none; D (length) */
+  PetscReal stress, range;  /* K (length^2/time^2), 0: no contact; D (length) */
+  PetscReal adhesion, band; /* W (length^3/time^2), 0: none; B (length) */
 } Contact3Law;
 
 typedef struct {

@@ -133,6 +133,16 @@ def test_repulsion_keeps_a_film(tmp_path):
     assert np.allclose(pushed["energy_contact"], three["energy_contact"], rtol=1e-5)
 
 
+def test_adhesion_draws_vesicles_together(tmp_path):
+    """Vesicles at rest within the band of adhesion come nearer, and the energy of bending and contact falls."""
+    scene = f"{SPACE} -sphere_degree 6 -vesicle_count 2 -vesicle_center 0,0.95,0,0,-0.95,0 -vesicle_bending 1"
+    scene += " -contact_repulsion 200 -contact_repulsion_range 0.2 -contact_adhesion 4 -contact_adhesion_range 0.3"
+    run = run_petves(tmp_path / "run", f"{scene} -time_step 0.02 -time_end 0.3").series
+    energy = run["energy_contact"] + run["energy_bending_1"] + run["energy_bending_2"]
+    assert (np.diff(energy) < 0).all() and energy[-1] < energy[0] - 2
+    assert run["gap"][0] > 0.3 and 0.15 < run["gap"][-1] < 0.22
+
+
 def test_an_ellipsoid_of_points(tmp_path):
     """Points of an ellipsoid are that of -vesicle_half_axes to 1e-10, along x with its energy, turned with its points."""
     points = np.random.default_rng(7).normal(size=(400, 3))

@@ -41,12 +41,13 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
   TestCall(SphereDestroy(&sphere));
 }
 
-/* Repulsion of two spheres of radii a and b, distance R, gap g below the range D: the integral of psi over both areas
-   is pi a b K (D - g)^3/(3 R D). Its slope along the line of centers is the force, opposite on both. */
-static void CheckRepulsion(PetscInt p, PetscReal gap) {
+/* Contact of two spheres of radii a and b, distance R, gap g below the range D: the integral of psi over both areas is
+   2 pi a b/R times that of the energy of planes beyond g, K (D - g)^3/(6 D) - W (D - g) - W B/2. Its slope along the
+   line of centers is the force, opposite on both. */
+static void CheckContact(PetscInt p, PetscReal gap, PetscReal W, PetscReal B) {
   const PetscInt count = HarmonicsCount(p), size = 3 * count;
   const PetscReal a = 1, b = 0.6, K = 2, D = 0.3, R = a + b + gap, one = PetscSqrtReal(4 * PETSC_PI), small = 1e-4;
-  const Contact3Law law = {.stress = K, .range = D};
+  const Contact3Law law = {.stress = K, .range = D, .adhesion = W, .band = B};
   PetscMPIInt rank, ranks;
   Sphere sphere;
   CrossLayer cross;
@@ -73,9 +74,10 @@ static void CheckRepulsion(PetscInt p, PetscReal gap) {
   for (PetscInt v = 0; v < own; v++) force[1][first + v] = G[v * size] * one;
   TestSum(3, force[0]);
   TestSum(3, force[1]);
-  const PetscReal exact = PETSC_PI * a * b * K * PetscPowRealInt(D - gap, 3) / (3 * R * D),
+  const PetscReal exact = 2 * PETSC_PI * a * b / R *
+                          (K * PetscPowRealInt(D - gap, 3) / (6 * D) - W * (D - gap + B / 2)),
                   slope = (energy[1] - energy[2]) / (2 * small);
-  CHECK(PetscAbsReal(energy[0] / exact - 1) < 2e-2, "gap %g: energy of repulsion %.6g, exact %.6g", gap, energy[0],
+  CHECK(PetscAbsReal(energy[0] / exact - 1) < 2e-2, "gap %g: energy of contact %.6g, exact %.6g", gap, energy[0],
         exact);
   CHECK(PetscAbsReal(force[0][1] / slope - 1) < 5e-4, "gap %g: force %.6g, slope of the energy %.6g", gap, force[0][1],
         slope);
@@ -187,8 +189,9 @@ void Facts(void) {
     CheckSpheres(8, 1.7, along, 1e-4);
     CheckSpheres(8, 1.62, along, 1e-4);
   }
-  CheckRepulsion(8, 0.2);
-  CheckRepulsion(8, 0.08);
+  CheckContact(8, 0.2, 0, 0);
+  CheckContact(8, 0.08, 0, 0);
+  CheckContact(8, 0.2, 0.3, 0.3);
   CheckStep(1);
   CheckStep(5);
 }
