@@ -35,29 +35,17 @@ static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a
 
 /* a, b = X_s, X_ss of one vesicle's X[2n] at the points: at the markers, and then halfway to the next ones. */
 static void MomentSlopes(const Moment *o, PetscInt v, const PetscScalar X[]) {
-  const Membrane m = o->membrane;
-  const PetscInt n = LayoutCount(m->layout, v);
-  for (int power = 1; power <= 2; power++) {
-    PetscReal *at = power == 1 ? o->a : o->b;
-    (void)PetscArrayzero(at, 2 * n);
-    SpectralDerivative(m->spectral[v], power, PetscPowRealInt(n / m->arc[v], power), X, at);
-    SpectralShift(m->spectral[v], 2, PETSC_PI / n, at, at + 2 * n);
-  }
+  const PetscReal rate = LayoutCount(o->membrane->layout, v) / o->membrane->arc[v];
+  SpectralSlopes(o->membrane->spectral[v], (PetscReal[]){rate, rate * rate}, X, (PetscReal *[]){o->a, o->b});
 }
 
-/* G += alpha times the transpose of MomentSlopes of a, b for the c_b ds of a point; the first derivative is
-   antisymmetric, and the shift back is the transpose of the shift. */
+/* G += alpha times the transpose of MomentSlopes of a, b for the c_b ds of a point. */
 static void MomentSlopesTranspose(const Moment *o, PetscInt v, PetscReal alpha, PetscScalar G[]) {
   const Membrane m = o->membrane;
-  const PetscInt n = LayoutCount(m->layout, v);
-  const PetscReal size = alpha * m->bending * m->part[v] * m->ds[v] / TIMES;
-  for (int power = 1; power <= 2; power++) {
-    PetscReal *at = power == 1 ? o->a : o->b;
-    SpectralShift(m->spectral[v], 2, -PETSC_PI / n, at + 2 * n, at + 2 * n);
-    for (PetscInt k = 0; k < 2 * n; k++) at[k] += at[2 * n + k];
-    SpectralDerivative(m->spectral[v], power, (power == 1 ? -size : size) * PetscPowRealInt(n / m->arc[v], power), at,
-                       G);
-  }
+  const PetscReal rate = LayoutCount(m->layout, v) / m->arc[v],
+                  size = alpha * m->bending * m->part[v] * m->ds[v] / TIMES;
+  SpectralSlopesTranspose(m->spectral[v], (PetscReal[]){size * rate, size * rate * rate}, (PetscReal *[]){o->a, o->b},
+                          G);
 }
 
 /* The points of one vesicle's markers X[2n], among those of all. */
@@ -68,17 +56,17 @@ static void MomentPoints(const Moment *o, PetscInt v, const PetscScalar X[], Mom
     point[q] = MomentOf(o->membrane->moment, o->kappa0[q], o->a + 2 * (q - first), o->b + 2 * (q - first));
 }
 
-/* G += alpha grad E_B, or with a motion V[2n] that is not NULL alpha N V, at the markers of one vesicle's points. */
-static void MomentAdd(const Moment *o, PetscInt v, PetscReal alpha, const MomentPoint point[], const PetscScalar V[],
-                      PetscScalar G[]) {
+/* G += alpha (gradient grad E_B + rate N V), at the markers of one vesicle's points; a, b: slopes of the motion V,
+   where rate is not 0. */
+static void MomentAdd(const Moment *o, PetscInt v, const MomentPoint point[], PetscReal gradient, PetscReal rate,
+                      PetscReal alpha, PetscScalar G[]) {
   const PetscInt *start = o->membrane->layout->start, first = TIMES * start[v];
-  if (V) MomentSlopes(o, v, V);
   for (PetscInt q = first; q < TIMES * start[v + 1]; q++) {
     const MomentPoint *at = &point[q];
-    PetscReal *a = o->a + 2 * (q - first), *b = o->b + 2 * (q - first), change = at->change;
-    if (V) change = at->by_a[0] * a[0] + at->by_a[1] * a[1] + at->by_b[0] * b[0] + at->by_b[1] * b[1];
+    PetscReal *a = o->a + 2 * (q - first), *b = o->b + 2 * (q - first), change = gradient * at->change;
+    if (rate != 0) change += rate * (at->by_a[0] * a[0] + at->by_a[1] * a[1] + at->by_b[0] * b[0] + at->by_b[1] * b[1]);
     for (int c = 0; c < 2; c++) {
-      a[c] = at->weight * change * (at->by_a[c] + (V ? 0 : 0.5 * change * at->weight_by_a[c]));
+      a[c] = at->weight * (change * at->by_a[c] + gradient * 0.5 * PetscSqr(at->change) * at->weight_by_a[c]);
       b[c] = at->weight * change * at->by_b[c];
     }
   }
@@ -90,11 +78,9 @@ static PetscErrorCode MomentPlace(void *context, Instant t, const PetscReal X[])
   const Layout l = o->membrane->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(o->at, 2 * l->n));
-  for (PetscInt v = 0; v < l->bodies; v++) MomentPoints(o, v, X + 2 * l->start[v], o->point);
-  for (PetscInt v = l->own; v < l->end; v++) {
-    PetscScalar *at = o->at + 2 * LayoutOffset(l, v);
-    MomentAdd(o, v, 1, o->point, NULL, at);
-    MomentAdd(o, v, -1, o->point, X + 2 * l->start[v], at);
+  for (PetscInt v = 0; v < l->bodies; v++) {
+    MomentPoints(o, v, X + 2 * l->start[v], o->point);
+    if (v >= l->own && v < l->end) MomentAdd(o, v, o->point, 1, -1, 1, o->at + 2 * LayoutOffset(l, v));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,8 +89,10 @@ static PetscErrorCode MomentRate(void *context, PetscReal alpha, const PetscScal
   const Moment *o = (const Moment *)context;
   const Layout l = o->membrane->layout;
   PetscFunctionBeginUser;
-  for (PetscInt v = l->own; v < l->end; v++)
-    MomentAdd(o, v, alpha, o->point, V + 2 * LayoutOffset(l, v), F + 2 * LayoutOffset(l, v));
+  for (PetscInt v = l->own; v < l->end; v++) {
+    MomentSlopes(o, v, V + 2 * LayoutOffset(l, v));
+    MomentAdd(o, v, o->point, 0, 1, alpha, F + 2 * LayoutOffset(l, v));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,7 +137,7 @@ static PetscErrorCode MomentOfMarkers(const Moment *o, const PetscScalar X[], Pe
     MomentPoints(o, v, X + at, o->other);
     for (PetscInt q = TIMES * l->start[v]; q < TIMES * l->start[v + 1] && E; q++)
       E[v] += 0.5 * size * o->other[q].weight * PetscSqr(o->other[q].change);
-    if (F) MomentAdd(o, v, -1, o->other, NULL, F + at);
+    if (F) MomentAdd(o, v, o->other, 1, 0, -1, F + at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,11 +2,13 @@
 #include "numerics/circulant.h"
 #include <fftw3.h>
 
-#define TURNS 5 /* angles that a step shifts by: the states before it, and bending by half an edge there and back */
+#define TURNS 3 /* angles that a step shifts by: those of the states before it */
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
-  fftw_plan forward;
+  fftw_plan forward, backward;
+  PetscReal *modes;  /* [2n] work: modes */
+  PetscReal *factor; /* [2][2][2n] of the modes, for the slopes of both powers at the points and halfway, over n */
   PetscReal *derivative[3];           /* weights [n] of powers 1, 2, 4 */
   PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
   PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
@@ -37,6 +39,21 @@ static void SpectralSetWeights(Spectral s) {
     }
 }
 
+/* Set the factors of the slopes, (2 pi i m/n)^power e^{pi i m/n} halfway; there the Nyquist mode of an even n is 0. */
+static void SpectralSetFactors(Spectral s) {
+  const PetscInt n = s->n;
+  PetscReal *factor = s->factor;
+  for (int power = 1; power <= 2; power++)
+    for (int half = 0; half < 2; half++, factor += 2 * n)
+      for (PetscInt q = 0; q < n; q++) {
+        const PetscInt m = 2 * q <= n ? q : q - n;
+        const PetscReal wave = 2 * PETSC_PI * m / n, angle = half * PETSC_PI * m / n;
+        const PetscReal size = 2 * q == n && (half || power == 1) ? 0 : (power == 1 ? wave : -wave * wave) / n;
+        factor[2 * q] = size * (power == 1 ? -PetscSinReal(angle) : PetscCosReal(angle));
+        factor[2 * q + 1] = size * (power == 1 ? PetscCosReal(angle) : PetscSinReal(angle));
+      }
+}
+
 PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   Spectral s;
   PetscFunctionBeginUser;
@@ -46,7 +63,8 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->hat = fftw_alloc_complex((size_t)n);
   s->line = fftw_alloc_complex((size_t)n);
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
-  PetscCall(PetscCalloc3(4 * n, &s->twice, 2 * n, &s->sum, n + 2, &s->round));
+  s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
+  PetscCall(PetscCalloc5(4 * n, &s->twice, 2 * n, &s->sum, n + 2, &s->round, 2 * n, &s->modes, 8 * n, &s->factor));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
@@ -57,6 +75,7 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   }
   for (int p = 0; p < 3; p++) PetscCall(PetscMalloc1(n, &s->derivative[p]));
   SpectralSetWeights(s);
+  SpectralSetFactors(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,11 +84,12 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   fftw_destroy_plan(s->forward);
+  fftw_destroy_plan(s->backward);
   fftw_free(s->hat);
   fftw_free(s->line);
   for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
   for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
-  PetscCall(PetscFree3(s->twice, s->sum, s->round));
+  PetscCall(PetscFree5(s->twice, s->sum, s->round, s->modes, s->factor));
   PetscCall(PetscFree(*spectral));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -85,6 +105,45 @@ void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScala
   SpectralRepeat(s, 2, X);
   CirculantConvolve(s->n, 2, PETSC_FALSE, s->derivative[power / 2], s->twice, s->sum);
   for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * s->sum[k];
+}
+
+/* z[n] += scale times the complex numbers x[n] times those of a factor, or (conjugate) times their conjugates. */
+static void SpectralMultiplyAdd(PetscInt n, PetscReal scale, PetscBool conjugate, const PetscReal factor[],
+                                const PetscReal x[], PetscReal z[]) {
+  for (PetscInt q = 0; q < 2 * n; q += 2) {
+    const PetscReal re = scale * factor[q], im = (conjugate ? -scale : scale) * factor[q + 1];
+    z[q] += re * x[q] - im * x[q + 1];
+    z[q + 1] += re * x[q + 1] + im * x[q];
+  }
+}
+
+void SpectralSlopes(Spectral s, const PetscReal scale[2], const PetscScalar X[], PetscReal *const slope[2]) {
+  const PetscInt n = s->n;
+  const size_t bytes = 2 * (size_t)n * sizeof(double);
+  memcpy(s->line, X, bytes);
+  fftw_execute(s->forward);
+  memcpy(s->modes, s->hat, bytes);
+  for (int part = 0; part < 4; part++) {
+    memset(s->hat, 0, bytes);
+    SpectralMultiplyAdd(n, scale[part / 2], PETSC_FALSE, s->factor + 2 * n * part, s->modes, (PetscReal *)s->hat);
+    fftw_execute(s->backward);
+    memcpy(slope[part / 2] + part % 2 * 2 * n, s->line, bytes);
+  }
+}
+
+void SpectralSlopesTranspose(Spectral s, const PetscReal scale[2], PetscReal *const slope[2], PetscScalar Y[]) {
+  const PetscInt n = s->n;
+  const size_t bytes = 2 * (size_t)n * sizeof(double);
+  const PetscReal *line = (PetscReal *)s->line;
+  memset(s->modes, 0, bytes);
+  for (int part = 0; part < 4; part++) {
+    memcpy(s->line, slope[part / 2] + part % 2 * 2 * n, bytes);
+    fftw_execute(s->forward);
+    SpectralMultiplyAdd(n, scale[part / 2], PETSC_TRUE, s->factor + 2 * n * part, (PetscReal *)s->hat, s->modes);
+  }
+  memcpy(s->hat, s->modes, bytes);
+  fftw_execute(s->backward);
+  for (PetscInt k = 0; k < 2 * n; k++) Y[k] += line[k];
 }
 
 PetscReal SpectralTail(Spectral s, PetscReal part, const PetscScalar X[]) {

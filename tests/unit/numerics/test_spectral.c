@@ -103,6 +103,31 @@ static void CheckShift(PetscInt n) {
   TestCall(SpectralDestroy(&s));
 }
 
+/* Slopes by fast transforms are derivatives and shifts by sums, and their transpose is adjoint to them. */
+static void CheckSlopes(PetscInt n) {
+  const PetscReal scale[2] = {1.7, -0.4};
+  unsigned seed = 5;
+  Spectral s;
+  TestCall(SpectralCreate(n, &s));
+  PetscReal *x = TestReals(2 * n), *back = TestReals(2 * n), *y = TestReals(4 * n), adjoint = 0;
+  PetscReal *slope[2] = {TestReals(4 * n), TestReals(4 * n)}, *other[2] = {TestReals(4 * n), TestReals(4 * n)};
+  for (PetscInt k = 0; k < 2 * n; k++) x[k] = TestRandom(&seed);
+  SpectralSlopes(s, scale, x, slope);
+  for (int power = 1; power <= 2; power++) {
+    for (PetscInt k = 0; k < 2 * n; k++) y[k] = 0;
+    SpectralDerivative(s, power, scale[power - 1], x, y);
+    SpectralShift(s, 2, PETSC_PI / n, y, y + 2 * n);
+    CHECK(TestFar(4 * n, slope[power - 1], y) < 1e-12, "%d markers: slope %d at the points and halfway, %.1e", (int)n,
+          power, TestFar(4 * n, slope[power - 1], y));
+    for (PetscInt k = 0; k < 4 * n; k++) other[power - 1][k] = TestRandom(&seed);
+    adjoint += TestProduct(4 * n, slope[power - 1], other[power - 1]);
+  }
+  SpectralSlopesTranspose(s, scale, other, back);
+  adjoint -= TestProduct(2 * n, x, back);
+  CHECK(PetscAbsReal(adjoint) < 1e-11, "%d markers: the transpose of the slopes, %.1e", (int)n, adjoint);
+  TestCall(SpectralDestroy(&s));
+}
+
 /* Half the squared edges' rate of change along a motion U, at markers near rest, is ds SUM (Dm U). */
 static void CheckStretching(const TestMembrane *w, const char derivative[]) {
   const Membrane m = w->membrane;
@@ -217,5 +242,7 @@ void Facts(void) {
   CheckDerivatives(48);
   CheckShift(35);
   CheckShift(48);
+  CheckSlopes(35);
+  CheckSlopes(48);
   for (int k = 0; k < 3; k++) CheckMembrane(derivatives[k]);
 }
