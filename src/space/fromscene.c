@@ -2,6 +2,8 @@
 #include "scene/auto.h"
 #include "scene/flow3.h"
 
+#define RINGS_ON_THROAT 4 /* spaces of the throat's rings that its radius and its depth have at least */
+
 static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   PetscFunctionBeginUser;
   PetscCall(Flow3Velocities((const Flow *)flow, t, n, X, u));
@@ -41,12 +43,25 @@ static PetscErrorCode SpaceCheckPassage(Scene s, Space space) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* That rings can resolve the throat. */
+static PetscErrorCode SpaceCheckThroat(Scene s, Throat throat) {
+  const SceneTube *tube = &s->space.tube;
+  const PetscReal least = RINGS_ON_THROAT * ThroatLeastFilm(throat);
+  PetscFunctionBeginUser;
+  PetvesCheck(tube->throat >= least && tube->radius - tube->throat >= least, s->comm,
+              "-tube_throat %g: too narrow or too shallow for a throat of this length; allowed: from %g to %g, or a "
+              "shorter -tube_throat_length and -tube_throat_mouth",
+              (double)tube->throat, (double)least, (double)(tube->radius - least));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* That the first shapes are inside the tube. */
 static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
   PetscReal film;
   PetscFunctionBeginUser;
   if (!space->tube.tube) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceCheckPassage(s, space));
+  if (space->tube.throat) PetscCall(SpaceCheckThroat(s, space->tube.throat));
   PetscCall(SpaceMeasureFilm(space, space->state.X, &film));
   PetvesCheck(
       film >= space->tube.least || !space->tube.throat, s->comm,

@@ -3,6 +3,7 @@
 
 #define ON_MOUTH 40 /* spaces between rings on a mouth at least */
 #define ON_DEPTH 12 /* spaces between rings on the depth R - R_t and on R_t at least, as lengths */
+#define FAR 8.      /* radii beyond which flows without flux are nothing but rounding */
 #define NEAREST 0.6 /* of a space: rings nearer to the tube are left out */
 #define MOST_SPACES ((PetscInt)(NEAREST * TUBE_MOST_LENGTHS)) /* those that the tube has nodes for */
 
@@ -113,6 +114,12 @@ PetscReal ThroatLeastFilm(Throat t) {
   return 2 * ThroatReach(t) / MOST_SPACES;
 }
 
+/* Whether a body between low and high is too far away to act on the rings but by the mean flow. */
+static PetscBool ThroatIsFar(Throat t, PetscReal low, PetscReal high) {
+  const PetscReal reach = ThroatReach(t) + FAR * t->tube->setting.radius, x = t->setting.center;
+  return (PetscBool)(low > x + reach || high < x - reach);
+}
+
 /* Rings in the middles of equal spaces along x. */
 static PetscErrorCode ThroatMakeRings(Throat t, PetscInt spaces) {
   const PetscReal reach = ThroatReach(t), h = 2 * reach / (PetscReal)spaces, R = t->tube->setting.radius;
@@ -191,6 +198,7 @@ static PetscErrorCode ThroatMakeFactor(Throat t) {
 PetscErrorCode ThroatPlace(Throat t, PetscInt p, const TubeExtent *extent) {
   const PetscReal length = 2 * ThroatReach(t), depth = t->tube->setting.radius - t->setting.radius,
                   space = PetscMin(t->setting.mouth / ON_MOUTH, PetscMin(depth, t->setting.radius) / ON_DEPTH);
+  TubeExtent with_throat = *extent;
   PetscInt spaces = (PetscInt)PetscCeilReal(length / space);
   PetscFunctionBeginUser;
   while (length > extent->film * (PetscReal)spaces) spaces *= 2;
@@ -198,7 +206,8 @@ PetscErrorCode ThroatPlace(Throat t, PetscInt p, const TubeExtent *extent) {
   const PetscBool renew = (PetscBool)(spaces != t->spaces);
   if (renew) PetscCall(ThroatMakeRings(t, spaces));
   TubeExtend(t->tube, 2 * t->n, NEAREST * length / (PetscReal)spaces, length);
-  PetscCall(TubePlace(t->tube, p, extent));
+  with_throat.high = PetscMax(extent->high, extent->low + length + 2 * FAR * t->tube->setting.radius);
+  PetscCall(TubePlace(t->tube, p, &with_throat));
   if (!renew && t->highest == t->tube->highest && t->waves == t->tube->waves) PetscFunctionReturn(PETSC_SUCCESS);
   t->highest = t->tube->highest;
   t->waves = t->tube->waves;
@@ -214,11 +223,16 @@ PetscErrorCode ThroatFactor(Throat t, const PetscReal c[], PetscReal T[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(3 * n, &X, 2 * n * more, &K));
   PetscCall(SphereFieldValues(table, HARMONIC, c, X));
-  ThroatStokeslets(t, n, X, PETSC_FALSE, K);
+  const PetscBool far = ThroatIsFar(t, X[n - 1], X[0]);
+  const PetscInt first = far ? t->waves - 1 : 0; /* of the tube's rows that matter: the last one is of the mean flow */
+  if (far)
+    PetscCall(PetscArrayzero(K, 2 * n * more));
+  else
+    ThroatStokeslets(t, n, X, PETSC_FALSE, K);
   PetscCall(TubeProject(t->tube, more, K, own, rows));
   PetscCall(PetscFree2(X, K));
-  PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){t->T, t->waves, more, t->waves},
-                               (DenseView){T, t->waves, size, rows}, 1, own, rows));
+  PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){t->T + first, t->waves - first, more, t->waves},
+                               (DenseView){T + first, t->waves - first, size, rows}, 1, own, rows));
   PetscCall(ThroatSolve(t, size, own, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -100,6 +100,15 @@ def test_a_long_throat_is_a_tube(tmp_path):
         assert throat[column][-1] == pytest.approx(tube[column][-1], rel=off), column
 
 
+def test_a_throat_far_away_is_not_felt(tmp_path):
+    scene = f"{TUBE} -tube_radius 1.5 -sphere_degree 8 -time_step 0.05 -time_end 0.1 -vesicle_center -50,0,0"
+    bare, throat = (
+        run_petves(tmp_path / w[1:8], f"{scene} {w}").series for w in ("-time_adapt none", "-tube_throat 1.2")
+    )
+    for column in ("velocity_x", "pressure_drop_extra", "energy_bending"):
+        assert throat[column][-1] == pytest.approx(bare[column][-1], rel=1e-9), column
+
+
 def test_throat_with_a_given_pressure_drop(tmp_path):
     """The mean velocity that a pressure drop makes has the same vesicles when it is given, on two ranks too."""
     scene = f"{AXIAL} -flow_type tube -tube_radius 1.5 -tube_throat 0.95 -sphere_degree 8 -vesicle_bending 1 "
