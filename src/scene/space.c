@@ -138,7 +138,6 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   PetscCall(SceneReadSurfaces(s, &rows));
   PetscCall(SceneCheckSpaceLists(s));
   const PetscInt count = s->vesicles.count;
-  const PetscBool ratio = SceneHasContrast(s);
   for (PetscInt k = 0; k < s->membrane.stiffness.n; k++) softest = PetscMin(softest, s->membrane.stiffness.v[k]);
   const SceneRule rules[] = {
       {s->flow.type == FLOW_FORMULA && !SceneGiven(s, "-flow_u") && !SceneGiven(s, "-flow_v") &&
@@ -166,8 +165,6 @@ PetscErrorCode SceneResolveSpace(Draft s) {
        "-dim axisymmetric and one vesicle without -vesicle_file"},
       {SceneGiven(s, "-vesicle_half_axes") && s->space.spheroid == SPHEROID_CAPSULE,
        "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_spheroid capsule; allowed: one of both descriptions"},
-      {count > 1 && ratio, "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with several vesicles; allowed with "
-                           "-dim 3: 1, or one vesicle"},
       {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
   PetscCall(REFUSE(s, rules));
   PetscCall(SceneCheckEach(s));

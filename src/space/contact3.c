@@ -51,10 +51,10 @@ PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const Petsc
   PetscCall(PetscMalloc2(a->n, &area[0], b->n, &area[1]));
   PetscCall(ContactAreas(a, pair->sphere->count, J1, area[0]));
   PetscCall(ContactAreas(b, pair->sphere->count, J2, area[1]));
-  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance2(l, &l->entry[k]) < reach * reach;
+  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance2(l, &l->entry[STOKESLET][k]) < reach * reach;
   PetscCall(PetscMalloc1(room, &c->entry));
   for (PetscInt k = 0; k < l->entries; k++) {
-    const NearEntry *e = &l->entry[k];
+    const NearEntry *e = &l->entry[STOKESLET][k];
     const PetscReal r = PetscSqrtReal(NearEntryDistance2(l, e)), both = area[0][e->i] * area[1][e->j];
     if (r >= reach) continue;
     NearEntry *own = &c->entry[c->entries++];

@@ -1,6 +1,7 @@
 #include "space/crosslayer.h"
 #include "base/agree.h"
 #include "base/lanes.h"
+#include "sphere/spherelayer.h"
 #include "sphere/surface.h"
 
 PetscErrorCode ShareGather(const VesicleShare *s, PetscInt each, const PetscReal own[], PetscReal all[]) {
@@ -19,7 +20,8 @@ PetscErrorCode ShareScatter(const VesicleShare *s, PetscInt each, const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu, Contact3Law law, CrossLayer *out) {
+PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu, Contact3Law law, PetscInt kernels,
+                                CrossLayer *out) {
   CrossLayer c;
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&c));
@@ -29,9 +31,10 @@ PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu,
   c->share = share;
   c->nu = nu;
   c->law = law;
-  PetscCall(PetscMalloc3(share.vesicles * c->sphere->size, &c->X, share.vesicles * 3 * c->sphere->shape.grid.n,
-                         &c->points, share.own * share.vesicles, &c->pair));
-  PetscCall(NearTablesCreate(&c->tables));
+  const PetscInt n = 3 * share.vesicles * c->sphere->shape.grid.n;
+  PetscCall(PetscMalloc4(share.vesicles * c->sphere->size, &c->X, n, &c->points, n, &c->normals,
+                         share.own * share.vesicles, &c->pair));
+  PetscCall(NearTablesCreate(kernels, &c->tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,7 +55,7 @@ PetscErrorCode CrossLayerDestroy(CrossLayer *cross) {
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CrossForgetPairs(c));
   PetscCall(NearTablesDestroy(&c->tables));
-  PetscCall(PetscFree3(c->X, c->points, c->pair));
+  PetscCall(PetscFree4(c->X, c->points, c->normals, c->pair));
   if (c->sphere != c->fields) PetscCall(SphereDestroy(&c->sphere));
   PetscCall(PetscFree(*cross));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -227,12 +230,29 @@ static PetscErrorCode CrossFindContacts(CrossLayer c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* n dA/domega at the points of the grids of degree p. */
+static PetscErrorCode CrossFindNormals(CrossLayer c) {
+  const SphereTable *table = &c->sphere->shape;
+  const PetscInt n = table->grid.n, count = c->sphere->count;
+  PetscReal *T, *P;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &T, 3 * n, &P));
+  for (PetscInt v = 0; v < c->share.vesicles; v++) {
+    PetscCall(SphereTableValues(table, HARMONIC_T, count, 3, c->X + v * 3 * count, T));
+    PetscCall(SphereTableValues(table, HARMONIC_P, count, 3, c->X + v * 3 * count, P));
+    LayerNormals(n, table->grid.theta, T, P, c->normals + v * 3 * n);
+  }
+  PetscCall(PetscFree2(T, P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
   const PetscInt count = c->sphere->count;
   PetscFunctionBeginUser;
   PetscCall(CrossLayerMeasure(c, X));
   if (c->gap <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SphereTableValues(&c->sphere->shape, HARMONIC, count, 3 * c->share.vesicles, c->X, c->points));
+  if (c->tables.kernels > STRESSLET) PetscCall(CrossFindNormals(c));
   for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++)
     PetscCall(NearPairCreate(c->sphere, &c->tables, pair->spacing, c->X + pair->surface[0] * 3 * count,
                              c->X + pair->surface[1] * 3 * count, &pair->near));
@@ -240,11 +260,12 @@ PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u[3][n] += Stokeslets of the forces f[3][n] at Y[3][n], at the points X[3][n]; 8 pi nu times the velocity. The last
-   four sources overlap others, of which they take nothing. */
-static void CrossAddStokeslets(PetscInt n, const PetscReal X[], const PetscReal Y[], const PetscReal f[],
-                               PetscReal u[]) {
-  const Lanes order = {0, 1, 2, 3};
+/* u[3][n] += Stokeslets of the forces f[3][n] at Y[3][n], or stresslets of the velocities f with the normals
+   normal[3][n] (NULL: Stokeslets), at the points X[3][n]; 8 pi times the velocity. The last four sources overlap
+   others, of which they take nothing. */
+static void CrossAddPoints(PetscInt n, const PetscReal X[], const PetscReal Y[], const PetscReal f[],
+                           const PetscReal *normal, PetscReal u[]) {
+  const Lanes order = {0, 1, 2, 3}, none = {0};
   for (PetscInt i = 0; i < n; i++) {
     Lanes sum[3] = {{0}, {0}, {0}};
     for (PetscInt k = 0; k < n; k += LANES) {
@@ -255,17 +276,22 @@ static void CrossAddStokeslets(PetscInt n, const PetscReal X[], const PetscReal 
                   fy = LanesAt(f + n + j), fz = LanesAt(f + 2 * n + j);
       const Lanes root = {PetscSqrtReal(r2[0]), PetscSqrtReal(r2[1]), PetscSqrtReal(r2[2]), PetscSqrtReal(r2[3])},
                   over = LanesWhere(so, 1 / root);
-      const Lanes along = (x * fx + y * fy + z * fz) * over * over * over;
-      sum[0] += fx * over + along * x;
-      sum[1] += fy * over + along * y;
-      sum[2] += fz * over + along * z;
+      Lanes along = (x * fx + y * fy + z * fz) * over * over * over, isotropic = over;
+      if (normal) {
+        along *= -6 * over * over *
+                 (x * LanesAt(normal + j) + y * LanesAt(normal + n + j) + z * LanesAt(normal + 2 * n + j));
+        isotropic = none;
+      }
+      sum[0] += fx * isotropic + along * x;
+      sum[1] += fy * isotropic + along * y;
+      sum[2] += fz * isotropic + along * z;
     }
     for (int d = 0; d < 3; d++) u[d * n + i] += LanesSum(sum[d]);
   }
 }
 
 /* U[own] += what all other vesicles' grids of degree p do, of viscosity 1; F[vesicles]. */
-static PetscErrorCode CrossAddGrids(CrossLayer c, const PetscReal F[], PetscReal U[]) {
+static PetscErrorCode CrossAddGrids(CrossLayer c, NearKernel kernel, const PetscReal F[], PetscReal U[]) {
   const SphereTable *table = &c->sphere->shape;
   const PetscInt n = table->grid.n, count = c->sphere->count, all = 3 * c->share.vesicles;
   PetscReal *f, *u, *part;
@@ -277,7 +303,9 @@ static PetscErrorCode CrossAddGrids(CrossLayer c, const PetscReal F[], PetscReal
     const PetscInt self = c->share.first + v;
     PetscCall(PetscArrayzero(u, 3 * n));
     for (PetscInt w = 0; w < c->share.vesicles; w++)
-      if (w != self) CrossAddStokeslets(n, c->points + self * 3 * n, c->points + w * 3 * n, f + w * 3 * n, u);
+      if (w != self)
+        CrossAddPoints(n, c->points + self * 3 * n, c->points + w * 3 * n, f + w * 3 * n,
+                       kernel == STRESSLET ? c->normals + w * 3 * n : NULL, u);
     PetscCall(SphereTableProject(table, count, 3, u, part));
     for (PetscInt k = 0; k < 3 * count; k++) U[v * 3 * count + k] += part[k];
   }
@@ -285,7 +313,7 @@ static PetscErrorCode CrossAddGrids(CrossLayer c, const PetscReal F[], PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
+PetscErrorCode CrossLayerAdd(CrossLayer c, NearKernel kernel, const PetscReal F[], PetscReal U[]) {
   const VesicleShare *s = &c->share;
   const PetscInt size = 3 * c->sphere->count;
   PetscReal *all, *whole;
@@ -293,8 +321,8 @@ PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
   PetscCall(PetscMalloc1(s->vesicles * size, &all));
   PetscCall(PetscCalloc1(s->own * size, &whole));
   PetscCall(CrossGather(c, F, all));
-  for (PetscInt k = 0; k < s->vesicles * size; k++) all[k] /= c->nu;
-  PetscCall(CrossAddGrids(c, all, whole));
+  for (PetscInt k = 0; k < s->vesicles * size && kernel == STOKESLET; k++) all[k] /= c->nu;
+  PetscCall(CrossAddGrids(c, kernel, all, whole));
   for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
     const PetscReal *f[2];
     PetscReal *u[2];
@@ -303,7 +331,7 @@ PetscErrorCode CrossLayerAdd(CrossLayer c, const PetscReal F[], PetscReal U[]) {
       f[side] = all + v * size;
       u[side] = ShareOwns(s, v) ? whole + (v - s->first) * size : NULL;
     }
-    PetscCall(NearPairAdd(pair->near, f, u));
+    PetscCall(NearPairAdd(pair->near, kernel, f, u));
   }
   PetscCall(CrossAddFields(c, whole, U));
   PetscCall(PetscFree(all));

@@ -1,7 +1,8 @@
-/* What vesicles do to one another: the single layer between different surfaces, by Stokeslets between the points of the
-   grids of degree p, and by finer grids where surfaces are near (nearlayer.h). The matrix between the coefficients of
-   two surfaces is the transpose of that the other way. Every rank knows all surfaces and sums for its own. Bodies of
-   revolution are whole spheres here, which only what comes in and goes out does not know. */
+/* What vesicles do to one another: the single and the double layer between different surfaces, by Stokeslets and
+   stresslets between the points of the grids of degree p, and by finer grids where surfaces are near (nearlayer.h). The
+   single layer's matrix between the coefficients of two surfaces is the transpose of that the other way. Every rank
+   knows all surfaces and sums for its own. Bodies of revolution are whole spheres here, which only what comes in and
+   goes out does not know. */
 #pragma once
 #include "space/contact3.h"
 
@@ -32,8 +33,9 @@ struct _p_CrossLayer {
   VesicleShare share;
   PetscReal nu;
   Contact3Law law;
-  PetscReal *X;      /* [vesicles][3 count] of all */
-  PetscReal *points; /* [vesicles][3][n] on the grids of degree p */
+  PetscReal *X;       /* [vesicles][3 count] of all */
+  PetscReal *points;  /* [vesicles][3][n] on the grids of degree p */
+  PetscReal *normals; /* [vesicles][3][n] n dA/domega there, of stresslets */
   NearTables tables;
   PetscInt pairs;
   CrossPair *pair; /* [pairs] near ones of which a surface is own */
@@ -41,16 +43,17 @@ struct _p_CrossLayer {
   PetscInt nearest[2];
 };
 
+/* CrossLayerCreate - with these kernels: the Stokeslet, or both. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu, Contact3Law law,
-                                             CrossLayer *cross);
+                                             PetscInt kernels, CrossLayer *cross);
 PETSC_EXTERN PetscErrorCode CrossLayerDestroy(CrossLayer *cross);
 
 /* CrossLayerMeasure - the least gap of the surfaces X[own][size]. CrossLayerPlace - the same, and what the surfaces do
    to one another where none overlap. CrossLayerAdd - U[own][size] += the velocities by forces F[own][size] on the other
-   vesicles. Collective. */
+   vesicles, or by the double layer of their velocities F. Collective. */
 PETSC_EXTERN PetscErrorCode CrossLayerMeasure(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerPlace(CrossLayer cross, const PetscReal X[]);
-PETSC_EXTERN PetscErrorCode CrossLayerAdd(CrossLayer cross, const PetscReal F[], PetscReal U[]);
+PETSC_EXTERN PetscErrorCode CrossLayerAdd(CrossLayer cross, NearKernel kernel, const PetscReal F[], PetscReal U[]);
 
 /* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][size] += its
    gradient. CrossLayerAddStiffness - G[own][size] += what a change of the surfaces, change[own][size], adds to the

@@ -1,5 +1,6 @@
 #include "space/nearlayer.h"
 #include "numerics/blas.h"
+#include "sphere/spherelayer.h"
 
 #define WIDTH 0.8  /* delta_0 over the spacing */
 #define REACH 3.0  /* of a short part, over its width */
@@ -10,13 +11,16 @@ PetscReal NearReach(PetscReal spacing) {
   return REACH * WIDTH * spacing;
 }
 
-PetscErrorCode NearTablesCreate(NearTables *t) {
+PetscErrorCode NearTablesCreate(PetscInt kernels, NearTables *t) {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(NODES + 1, &t->isotropic, NODES + 1, &t->along));
+  t->kernels = kernels;
+  for (int q = 0; q < NEAR_KERNELS; q++) PetscCall(PetscMalloc2(NODES + 1, &t->isotropic[q], NODES + 1, &t->along[q]));
   for (PetscInt k = 0; k <= NODES; k++) {
     const PetscReal r = REACH * (PetscReal)k / NODES, g = 2 / PetscSqrtReal(PETSC_PI) * r * PetscExpReal(-r * r);
-    t->isotropic[k] = erfc(r) - g;
-    t->along[k] = erfc(r) + g;
+    t->isotropic[STOKESLET][k] = erfc(r) - g;
+    t->along[STOKESLET][k] = erfc(r) + g;
+    t->isotropic[STRESSLET][k] = r * r * (t->along[STOKESLET][k] - t->isotropic[STOKESLET][k]);
+    t->along[STRESSLET][k] = -6 * t->along[STOKESLET][k] - 2 * t->isotropic[STRESSLET][k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -25,7 +29,7 @@ PetscErrorCode NearTablesDestroy(NearTables *t) {
   PetscFunctionBeginUser;
   for (int level = 0; level < NEAR_LEVELS; level++)
     if (t->grid[level].n) PetscCall(SphereGridDestroy(&t->grid[level]));
-  PetscCall(PetscFree2(t->isotropic, t->along));
+  for (int q = 0; q < NEAR_KERNELS; q++) PetscCall(PetscFree2(t->isotropic[q], t->along[q]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,20 +41,36 @@ static PetscInt NearStride(PetscInt k, PetscReal theta) {
   return stride;
 }
 
-/* Of points whose numbers are set. */
-static PetscErrorCode NearPatchCreate(Sphere s, PetscInt k, const SphereGrid *grid, const PetscReal c[], NearPatch *p) {
+/* n dA/domega at the points of a patch, whose harmonics are in Y with their first derivatives. */
+static PetscErrorCode NearPatchNormals(PetscInt count, const PetscReal c[], NearPatch *p) {
+  PetscReal *T, *P;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * p->n, &p->normal));
+  PetscCall(PetscMalloc2(3 * p->n, &T, 3 * p->n, &P));
+  PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y + HARMONIC_T * count * p->n, c, T));
+  PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y + HARMONIC_P * count * p->n, c, P));
+  LayerNormals(p->n, p->theta, T, P, p->normal);
+  PetscCall(PetscFree2(T, P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of points of level k whose numbers are set. */
+static PetscErrorCode NearPatchCreate(Sphere s, const NearTables *t, PetscInt k, const PetscReal c[], NearPatch *p) {
+  const SphereGrid *grid = k ? &t->grid[k] : &s->shape.grid;
+  const PetscInt parts = t->kernels > STRESSLET ? HARMONIC_P + 1 : 1;
   PetscReal *phi;
   PetscFunctionBeginUser;
-  PetscCall(
-      PetscMalloc5(s->count * p->n, &p->Y, 3 * p->n, &p->X, p->n, &p->weight, p->n, &p->distance, p->n, &p->theta));
+  PetscCall(PetscMalloc5(parts * s->count * p->n, &p->Y, 3 * p->n, &p->X, p->n, &p->weight, p->n, &p->distance, p->n,
+                         &p->theta));
   PetscCall(PetscMalloc1(p->n, &phi));
   for (PetscInt i = 0; i < p->n; i++) {
     p->theta[i] = grid->theta[p->point[i]];
     phi[i] = grid->phi[p->point[i]];
     p->weight[i] = (PetscReal)NearStride(k, p->theta[i]) * grid->weight[p->point[i]];
   }
-  PetscCall(HarmonicsAt(s->p, p->n, p->theta, phi, 1, p->Y));
+  PetscCall(HarmonicsAt(s->p, p->n, p->theta, phi, parts, p->Y));
   PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, s->count, p->Y, c, p->X));
+  if (parts > 1) PetscCall(NearPatchNormals(s->count, c, p));
   PetscCall(PetscFree(phi));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,24 +78,26 @@ static PetscErrorCode NearPatchCreate(Sphere s, PetscInt k, const SphereGrid *gr
 static PetscErrorCode NearPatchDestroy(NearPatch *p) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(p->point));
+  PetscCall(PetscFree(p->normal));
   PetscCall(PetscFree5(p->Y, p->X, p->weight, p->distance, p->theta));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* All points of the grid of degree p. */
-static PetscErrorCode NearPatchWhole(Sphere s, const PetscReal c[], NearPatch *p) {
+static PetscErrorCode NearPatchWhole(Sphere s, const NearTables *t, const PetscReal c[], NearPatch *p) {
   PetscFunctionBeginUser;
   p->n = s->shape.grid.n;
   PetscCall(PetscMalloc1(p->n, &p->point));
   for (PetscInt i = 0; i < p->n; i++) p->point[i] = i;
-  PetscCall(NearPatchCreate(s, 0, &s->shape.grid, c, p));
+  PetscCall(NearPatchCreate(s, t, 0, c, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The points of level k in the cells of those points of the level before that are nearer to the other surface than
    `within`. */
-static PetscErrorCode NearPatchRefine(Sphere s, const NearPatch *coarse, PetscReal within, PetscInt k,
-                                      const SphereGrid *grid, const PetscReal c[], NearPatch *p) {
+static PetscErrorCode NearPatchRefine(Sphere s, const NearTables *t, const NearPatch *coarse, PetscReal within,
+                                      PetscInt k, const PetscReal c[], NearPatch *p) {
+  const SphereGrid *grid = &t->grid[k];
   const PetscInt around = 2 * grid->q + 2;
   PetscFunctionBeginUser;
   p->n = 0;
@@ -88,7 +110,7 @@ static PetscErrorCode NearPatchRefine(Sphere s, const NearPatch *coarse, PetscRe
       for (PetscInt m = 0; m < cell; m += NearStride(k, grid->theta[row * around]))
         p->point[p->n++] = row * around + 2 * longitude + m;
   }
-  PetscCall(NearPatchCreate(s, k, grid, c, p));
+  PetscCall(NearPatchCreate(s, t, k, c, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,8 +120,8 @@ static void NearDistances(const NearPatch *p, const PetscReal x[3], PetscReal r2
     r2[j] = PetscSqr(p->X[j] - x[0]) + PetscSqr(p->X[p->n + j] - x[1]) + PetscSqr(p->X[2 * p->n + j] - x[2]);
 }
 
-/* Distances of the points to the other patch, the least one, and room for an entry of each pair within reach. */
-static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscReal reach, PetscReal *least) {
+/* Distances of the points to the other patch, the least one, and room for entries of each pair within reach. */
+static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscInt kernels, PetscReal reach, PetscReal *least) {
   const NearPatch *a = &l->patch[0], *b = &l->patch[1];
   PetscInt pairs = 0;
   PetscReal *r2;
@@ -121,21 +143,23 @@ static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscReal reach, PetscReal 
   }
   for (PetscInt j = 0; j < b->n; j++) b->distance[j] = PetscSqrtReal(b->distance[j]);
   PetscCall(PetscFree(r2));
-  PetscCall(PetscMalloc1(pairs, &l->entry));
+  for (PetscInt q = 0; q < kernels; q++) PetscCall(PetscMalloc1(pairs, &l->entry[q]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a I + b d d += scale L(width) at the distance r. */
-static void NearAddShort(const NearTables *t, PetscReal scale, PetscReal width, PetscReal r, NearEntry *e) {
+/* The factors += scale times those of L(width), or its stresslet, at the distance r. */
+static void NearAddShort(const NearTables *t, PetscInt kernel, PetscReal scale, PetscReal width, PetscReal r,
+                         NearEntry *e) {
   const PetscReal at = r / (width * REACH) * NODES;
   if (at >= NODES) return;
   const PetscInt k = (PetscInt)at;
-  const PetscReal part = at - (PetscReal)k, over = scale / (8 * PETSC_PI * r);
-  e->a += over * (t->isotropic[k] + part * (t->isotropic[k + 1] - t->isotropic[k]));
-  e->b += over / (r * r) * (t->along[k] + part * (t->along[k + 1] - t->along[k]));
+  const PetscReal part = at - (PetscReal)k, over = scale / (8 * PETSC_PI * r) / (kernel == STRESSLET ? r * r : 1),
+                  *isotropic = t->isotropic[kernel] + k, *along = t->along[kernel] + k;
+  e->a += over * (isotropic[0] + part * (isotropic[1] - isotropic[0]));
+  e->b += over / (r * r) * (along[0] + part * (along[1] - along[0]));
 }
 
-/* The entries: scale L(width) - L(less), where `less` is not 0. */
+/* The entries of each kernel: scale L(width) - L(less), where `less` is not 0. */
 static PetscErrorCode NearLevelFill(NearLevel *l, const NearTables *t, PetscReal scale, PetscReal width,
                                     PetscReal less) {
   const NearPatch *a = &l->patch[0], *b = &l->patch[1];
@@ -148,10 +172,13 @@ static PetscErrorCode NearLevelFill(NearLevel *l, const NearTables *t, PetscReal
     NearDistances(b, (PetscReal[]){a->X[i], a->X[a->n + i], a->X[2 * a->n + i]}, r2);
     for (PetscInt j = 0; j < b->n; j++) {
       if (r2[j] >= reach * reach) continue;
-      NearEntry *e = &l->entry[l->entries++];
-      *e = (NearEntry){.i = i, .j = j};
-      NearAddShort(t, scale, width, PetscSqrtReal(r2[j]), e);
-      if (less > 0) NearAddShort(t, -scale, less, PetscSqrtReal(r2[j]), e);
+      for (PetscInt q = 0; q < t->kernels; q++) {
+        NearEntry *e = &l->entry[q][l->entries];
+        *e = (NearEntry){.i = i, .j = j};
+        NearAddShort(t, q, scale, width, PetscSqrtReal(r2[j]), e);
+        if (less > 0) NearAddShort(t, q, -scale, less, PetscSqrtReal(r2[j]), e);
+      }
+      l->entries++;
     }
   }
   PetscCall(PetscFree(r2));
@@ -168,8 +195,8 @@ PetscErrorCode NearPairCreate(Sphere sphere, NearTables *t, PetscReal spacing, c
   *out = pair;
   pair->sphere = sphere;
   pair->levels = 1;
-  for (int side = 0; side < 2; side++) PetscCall(NearPatchWhole(sphere, c[side], &pair->level[0].patch[side]));
-  PetscCall(NearLevelMeasure(&pair->level[0], REACH * width, &least));
+  for (int side = 0; side < 2; side++) PetscCall(NearPatchWhole(sphere, t, c[side], &pair->level[0].patch[side]));
+  PetscCall(NearLevelMeasure(&pair->level[0], t->kernels, REACH * width, &least));
   PetscCall(NearLevelFill(&pair->level[0], t, -1, width, 0));
   PetscBool last = (PetscBool)(least > REACH * width);
   for (PetscInt k = 1; !last; k++, spacing /= 2, width /= 2) {
@@ -177,10 +204,10 @@ PetscErrorCode NearPairCreate(Sphere sphere, NearTables *t, PetscReal spacing, c
     NearLevel *l = &pair->level[k];
     if (!t->grid[k].n) PetscCall(SphereGridCreate(((sphere->p + 1) << k) - 1, GRID_WHOLE, &t->grid[k]));
     for (int side = 0; side < 2; side++)
-      PetscCall(NearPatchRefine(sphere, &before->patch[side], REACH * width + CELL * spacing, k, &t->grid[k], c[side],
+      PetscCall(NearPatchRefine(sphere, t, &before->patch[side], REACH * width + CELL * spacing, k, c[side],
                                 &l->patch[side]));
     pair->levels = k + 1;
-    PetscCall(NearLevelMeasure(l, REACH * width, &least));
+    PetscCall(NearLevelMeasure(l, t->kernels, REACH * width, &least));
     last = (PetscBool)(k == NEAR_LEVELS - 1 || least > REACH * width / 2);
     PetscCall(NearLevelFill(l, t, 1, width, last ? 0 : width / 2));
   }
@@ -193,7 +220,7 @@ PetscErrorCode NearPairDestroy(NearPair *pair) {
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < p->levels; k++) {
     for (int side = 0; side < 2; side++) PetscCall(NearPatchDestroy(&p->level[k].patch[side]));
-    PetscCall(PetscFree(p->level[k].entry));
+    for (int q = 0; q < NEAR_KERNELS; q++) PetscCall(PetscFree(p->level[k].entry[q]));
   }
   PetscCall(PetscFree(*pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -207,7 +234,26 @@ static PetscErrorCode NearForces(const NearPatch *p, PetscInt count, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NearPairAdd(NearPair pair, const PetscReal *const F[2], PetscReal *const U[2]) {
+/* u += a kernel at the distance d from a source of the strength f, with the normal `normal` (NULL: a Stokeslet); f and
+   normal have their components n numbers apart, u as many as there are targets. */
+static inline void NearAct(const NearEntry *e, const PetscReal d[3], PetscInt n, const PetscReal f[],
+                           const PetscReal *normal, PetscInt targets, PetscReal u[]) {
+  PetscReal along = 0, df = 0, dn = 0, fn = 0;
+  for (int q = 0; q < 3; q++) along += e->b * d[q] * f[q * n];
+  if (!normal) {
+    for (int q = 0; q < 3; q++) u[q * targets] += e->a * f[q * n] + along * d[q];
+    return;
+  }
+  for (int q = 0; q < 3; q++) {
+    df += d[q] * f[q * n];
+    dn += d[q] * normal[q * n];
+    fn += f[q * n] * normal[q * n];
+  }
+  for (int q = 0; q < 3; q++)
+    u[q * targets] += e->a * (f[q * n] * dn + normal[q * n] * df + d[q] * fn) + along * dn * d[q];
+}
+
+PetscErrorCode NearPairAdd(NearPair pair, NearKernel kernel, const PetscReal *const F[2], PetscReal *const U[2]) {
   const PetscInt count = pair->sphere->count;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < pair->levels; k++) {
@@ -217,17 +263,14 @@ PetscErrorCode NearPairAdd(NearPair pair, const PetscReal *const F[2], PetscReal
     PetscCall(PetscMalloc2(3 * a->n, &f[0], 3 * b->n, &f[1]));
     PetscCall(PetscCalloc2(3 * a->n, &u[0], 3 * b->n, &u[1]));
     for (int side = 0; side < 2; side++) PetscCall(NearForces(&l->patch[side], count, F[side], f[side]));
-    for (const NearEntry *e = l->entry; e < l->entry + l->entries; e++) {
-      PetscReal d[3], along[2] = {0, 0};
+    for (const NearEntry *e = l->entry[kernel]; e < l->entry[kernel] + l->entries; e++) {
+      PetscReal d[3], back[3];
       for (int q = 0; q < 3; q++) {
         d[q] = a->X[q * a->n + e->i] - b->X[q * b->n + e->j];
-        along[0] += e->b * d[q] * f[1][q * b->n + e->j];
-        along[1] += e->b * d[q] * f[0][q * a->n + e->i];
+        back[q] = -d[q];
       }
-      for (int q = 0; q < 3; q++) {
-        u[0][q * a->n + e->i] += e->a * f[1][q * b->n + e->j] + along[0] * d[q];
-        u[1][q * b->n + e->j] += e->a * f[0][q * a->n + e->i] + along[1] * d[q];
-      }
+      NearAct(e, d, b->n, f[1] + e->j, kernel == STRESSLET ? b->normal + e->j : NULL, a->n, u[0] + e->i);
+      NearAct(e, back, a->n, f[0] + e->i, kernel == STRESSLET ? a->normal + e->i : NULL, b->n, u[1] + e->j);
     }
     for (int side = 0; side < 2; side++) {
       const NearPatch *p = &l->patch[side];

@@ -4,12 +4,30 @@
 #define RENEWAL 0.4     /* iterations that new factors cost, over the number of harmonics */
 #define STEP_RATIO 1.45 /* of two steps with the same factors */
 
-PetscErrorCode SpaceMobility(Space s, const PetscReal F[], PetscReal V[]) {
+/* Whether velocities are unknowns. */
+static PetscBool SpaceSolvesVelocities(Space s) {
+  return (PetscBool)(s->unknowns > s->size + s->count);
+}
+
+/* V += D_o (1 - ratio) U. */
+static PetscErrorCode SpaceAddDoubleLayers(Space s, const PetscReal U[], PetscReal V[]) {
+  PetscReal *jump;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->share.own * s->size, &jump));
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) jump[k] = (1 - s->vesicle[k / s->size]->setting.ratio) * U[k];
+  PetscCall(CrossLayerAdd(s->cross, STRESSLET, jump, V));
+  if (s->tube.tube) PetscCall(SpaceAddTube(s, STRESSLET, jump, V));
+  PetscCall(PetscFree(jump));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceMobility(Space s, const PetscReal F[], const PetscReal U[], PetscReal V[]) {
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(DenseProduct(PETSC_FALSE, s->size, 1, s->size, s->vesicle[v]->S, F + v * s->size, V + v * s->size));
-  if (s->cross) PetscCall(CrossLayerAdd(s->cross, F, V));
-  if (s->cross && s->tube.tube) PetscCall(SpaceAddTube(s, F, V));
+  if (s->cross) PetscCall(CrossLayerAdd(s->cross, STOKESLET, F, V));
+  if (s->cross && s->tube.tube) PetscCall(SpaceAddTube(s, STOKESLET, F, V));
+  if (SpaceSolvesVelocities(s)) PetscCall(SpaceAddDoubleLayers(s, U, V));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Velocity(s->vesicle[v], 1, V + v * s->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -25,7 +43,14 @@ static PetscErrorCode SpaceForces(Space s, const PetscScalar x[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = what the rows make of x by U = -M C x. */
+/* U of x, where velocities are unknowns. */
+static void SpaceTakeVelocities(Space s, const PetscScalar x[]) {
+  if (!SpaceSolvesVelocities(s)) return;
+  for (PetscInt k = 0; k < s->share.own * s->size; k++)
+    s->work.U[k] = x[(k / s->size + 1) * s->unknowns - s->size + k % s->size];
+}
+
+/* y = what the rows make of x by U = -M C x, or of U, with the equation of U. */
 static PetscErrorCode SpaceMult(Mat A, Vec X, Vec Y) {
   Space s;
   const PetscScalar *x;
@@ -35,35 +60,56 @@ static PetscErrorCode SpaceMult(Mat A, Vec X, Vec Y) {
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(Y, &y));
   PetscCall(SpaceForces(s, x));
-  PetscCall(SpaceMobility(s, s->work.F, s->work.V));
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = -s->work.V[k];
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3Rows(s->vesicle[v], x + v * s->unknowns, s->work.V + v * s->size, y + v * s->unknowns));
+  SpaceTakeVelocities(s, x);
+  PetscCall(SpaceMobility(s, s->work.F, s->work.U, s->work.V));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    const PetscReal *U = s->work.U + v * s->size;
+    PetscReal *V = s->work.V + v * s->size;
+    for (PetscInt k = 0; k < s->size; k++) {
+      if (SpaceSolvesVelocities(s)) y[v * s->unknowns + s->size + s->count + k] = U[k] + V[k];
+      V[k] = SpaceSolvesVelocities(s) ? U[k] : -V[k];
+    }
+    PetscCall(Vesicle3Rows(s->vesicle[v], x + v * s->unknowns, V, y + v * s->unknowns));
+  }
   PetscCall(VecRestoreArrayWrite(Y, &y));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* x of each vesicle alone: of (Q, sigma), and where velocities are unknowns, of these, U = r_U - M C x with the rows of
+   r_U on the right of (Q, sigma). */
 static PetscErrorCode SpaceApplyFactors(PC pc, Vec r, Vec z) {
   Space s;
-  PetscScalar *x;
+  PetscScalar *all;
+  PetscReal *y;
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &s));
+  const PetscInt n = s->size + s->count, size = s->size;
+  PetscCall(PetscMalloc1(n, &y));
   PetscCall(VecCopy(r, z));
-  PetscCall(VecGetArray(z, &x));
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(DenseSolve(s->unknowns, s->made.matrix + v * s->unknowns * s->unknowns, s->made.pivot + v * s->unknowns,
-                         PETSC_FALSE, 1, x + v * s->unknowns));
-  PetscCall(VecRestoreArray(z, &x));
+  PetscCall(VecGetArray(z, &all));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    const Vesicle3 vesicle = s->vesicle[v];
+    PetscReal *x = all + v * s->unknowns, *F = s->work.F, *V = s->work.V;
+    if (SpaceSolvesVelocities(s)) PetscCall(Vesicle3Rows(vesicle, NULL, x + n, y));
+    for (PetscInt k = 0; k < n && SpaceSolvesVelocities(s); k++) x[k] -= y[k];
+    PetscCall(DenseSolve(n, s->made.matrix + v * n * n, s->made.pivot + v * n, PETSC_FALSE, 1, x));
+    if (!SpaceSolvesVelocities(s)) continue;
+    PetscCall(Vesicle3Force(vesicle, x, F));
+    PetscCall(DenseProduct(PETSC_FALSE, size, 1, size, vesicle->S, F, V));
+    PetscCall(Vesicle3Velocity(vesicle, 1, V));
+    for (PetscInt k = 0; k < size; k++) x[n + k] -= V[k];
+  }
+  PetscCall(VecRestoreArray(z, &all));
+  PetscCall(PetscFree(y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SpaceSolverCreate(Space s) {
-  const PetscInt n = s->unknowns;
+  const PetscInt n = s->size + s->count, all = s->share.own * s->unknowns;
   PC pc;
   PetscFunctionBeginUser;
-  PetscCall(
-      MatCreateShell(s->share.comm, s->share.own * n, s->share.own * n, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
+  PetscCall(MatCreateShell(s->share.comm, all, all, PETSC_DETERMINE, PETSC_DETERMINE, s, &s->A));
   PetscCall(MatShellSetOperation(s->A, MATOP_MULT, (void (*)(void))SpaceMult));
   PetscCall(MatCreateVecs(s->A, &s->x, &s->b));
   PetscCall(PetscMalloc2(s->share.own * n * n, &s->made.matrix, s->share.own * n, &s->made.pivot));
@@ -97,7 +143,7 @@ PetscErrorCode SpaceSolverDestroy(Space s) {
 
 /* Factors of the vesicles where they are placed; report.failure when one is singular. */
 static PetscErrorCode SpaceMakeFactors(Space s) {
-  const PetscInt n = s->unknowns;
+  const PetscInt n = s->size + s->count;
   int good = 1;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) {
@@ -140,40 +186,47 @@ PetscErrorCode SpaceRecall(Space s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* b = targets - rows of u_inf - M known. V becomes this velocity. */
+/* b = targets - rows of the velocity u_inf - M known, which V becomes; or the targets and this velocity. */
 static PetscErrorCode SpaceRightHandSide(Space s) {
-  const PetscInt n = s->unknowns;
-  PetscScalar *b;
+  const PetscInt n = s->size + s->count;
+  PetscScalar *all;
   PetscReal *y;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(PetscArraycpy(s->work.F + v * s->size, s->vesicle[v]->known, s->size));
-  PetscCall(SpaceMobility(s, s->work.F, s->work.V));
+  PetscCall(PetscArrayzero(s->work.U, s->share.own * s->size));
+  PetscCall(SpaceMobility(s, s->work.F, s->work.U, s->work.V));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
   PetscCall(PetscMalloc1(n, &y));
-  PetscCall(VecGetArrayWrite(s->b, &b));
+  PetscCall(VecGetArrayWrite(s->b, &all));
   for (PetscInt v = 0; v < s->share.own; v++) {
     const PetscInt at = v * s->size;
     const PetscReal *U = s->state.solved ? s->state.U + at : NULL;
-    PetscCall(Vesicle3Target(s->vesicle[v], s->work.Xhat + at, s->work.Xstar + at, U, b + v * n));
+    PetscScalar *b = all + v * s->unknowns;
+    PetscCall(Vesicle3Target(s->vesicle[v], s->work.Xhat + at, s->work.Xstar + at, U, b));
+    if (SpaceSolvesVelocities(s)) {
+      PetscCall(PetscArraycpy(b + n, s->work.V + at, s->size));
+      continue;
+    }
     PetscCall(Vesicle3Rows(s->vesicle[v], NULL, s->work.V + at, y));
-    for (PetscInt k = 0; k < n; k++) b[v * n + k] -= y[k];
+    for (PetscInt k = 0; k < n; k++) b[k] -= y[k];
   }
-  PetscCall(VecRestoreArrayWrite(s->b, &b));
+  PetscCall(VecRestoreArrayWrite(s->b, &all));
   PetscCall(PetscFree(y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* V = u_inf - M (known + C x). */
+/* V = u_inf - M (known + C x), or U of x. */
 static PetscErrorCode SpaceVelocities(Space s) {
   const PetscScalar *x;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(s->x, &x));
   PetscCall(SpaceForces(s, x));
+  SpaceTakeVelocities(s, x);
   PetscCall(VecRestoreArrayRead(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++)
     for (PetscInt k = 0; k < s->size; k++) s->work.F[v * s->size + k] += s->vesicle[v]->known[k];
-  PetscCall(SpaceMobility(s, s->work.F, s->work.V));
+  PetscCall(SpaceMobility(s, s->work.F, s->work.U, s->work.V));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
   if (s->tube.tube) PetscCall(SpaceMeasureThrust(s));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -33,7 +33,8 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(SphereCreate(setting->p, setting->symmetry, &s->sphere));
   s->count = s->sphere->count;
   s->size = s->sphere->size;
-  s->unknowns = s->size + s->count;
+  for (PetscInt v = 0; v < vesicles; v++) s->contrast = (PetscBool)(s->contrast || material[v].ratio != 1);
+  s->unknowns = s->size + s->count + (vesicles > 1 && s->contrast ? s->size : 0);
   PetscCall(PetscCalloc1(s->share.own, &s->vesicle));
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(
@@ -42,13 +43,14 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   PetscCall(SpaceStateCreate(s, &s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateCreate(s, &s->old[j]));
   const PetscInt n = s->share.own * s->size;
-  PetscCall(PetscMalloc6(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
-                         &s->work.V));
+  PetscCall(PetscMalloc7(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
+                         &s->work.V, n, &s->work.U));
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
-  for (PetscInt v = 0; v < vesicles; v++) s->contrast = (PetscBool)(s->contrast || material[v].ratio != 1);
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
-  if (vesicles > 1) PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, &s->cross));
+  if (vesicles > 1)
+    PetscCall(CrossLayerCreate(s->sphere, s->share, material[0].nu, setting->repulsion, s->contrast ? NEAR_KERNELS : 1,
+                               &s->cross));
   s->tube.left = 1;
   if (setting->tube.radius > 0) PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube));
   if (setting->throat.radius > 0) PetscCall(ThroatCreate(&setting->throat, s->tube.tube, &s->tube.throat));
@@ -71,7 +73,7 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(SpaceStateDestroy(&s->state));
   PetscCall(SpaceStateDestroy(&s->start));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateDestroy(&s->old[j]));
-  PetscCall(PetscFree6(s->work.Xstar, s->work.Xhat, s->work.Y, s->work.background, s->work.F, s->work.V));
+  PetscCall(PetscFree7(s->work.Xstar, s->work.Xhat, s->work.Y, s->work.background, s->work.F, s->work.V, s->work.U));
   PetscCall(SphereDestroy(&s->sphere));
   PetscCall(PetscFree(*space));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -167,12 +169,16 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First guess of (Q, sigma): Q that leads to X*, the tension of the last states extrapolated. */
+/* First guess of the unknowns: Q that leads to X*, tension and velocity of the last states extrapolated. */
 static PetscErrorCode SpaceGuess(Space s, const BDF *b) {
-  const PetscReal *sigma[BDF_MOST] = {s->state.sigma};
+  const PetscReal *sigma[BDF_MOST] = {s->state.sigma}, *U[BDF_MOST] = {s->state.U};
+  const PetscInt pair = s->size + s->count;
   PetscScalar *x;
   PetscFunctionBeginUser;
-  for (int j = 1; j < BDF_MOST; j++) sigma[j] = s->old[j - 1].sigma;
+  for (int j = 1; j < BDF_MOST; j++) {
+    sigma[j] = s->old[j - 1].sigma;
+    U[j] = s->old[j - 1].U;
+  }
   PetscCall(VecGetArrayWrite(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscScalar *Q = x + v * s->unknowns;
@@ -181,6 +187,10 @@ static PetscErrorCode SpaceGuess(Space s, const BDF *b) {
     for (PetscInt k = 0; k < s->count; k++) {
       Q[s->size + k] = 0;
       for (PetscInt j = 0; j < b->order; j++) Q[s->size + k] += b->star[j] * sigma[j][v * s->count + k];
+    }
+    for (PetscInt k = 0; k < s->unknowns - pair; k++) {
+      Q[pair + k] = 0;
+      for (PetscInt j = 0; j < b->order; j++) Q[pair + k] += b->star[j] * U[j][v * s->size + k];
     }
   }
   PetscCall(VecRestoreArrayWrite(s->x, &x));

@@ -3,7 +3,12 @@
 
    A step of the orders 1 to 3 (scheme/bdf.h) solves the problem of vesicle3.h for all vesicles by GMRES with the prefix
    coupled_, preconditioned by the factors of each vesicle's own problem, which are kept as long as their iterations are
-   cheaper than new factors. */
+   cheaper than new factors.
+
+   Of several vesicles whose viscosities are not all equal, the velocities U are unknowns too, as they are within the
+   double layers. With S and K of each vesicle alone, S_o and D_o from all others, with the tube,
+
+       U + K^-1 [(S + S_o) F + D_o (1 - ratio) U] = K^-1 u_inf. */
 #pragma once
 #include "precondition/age.h"
 #include "scheme/bdf.h"
@@ -47,9 +52,10 @@ typedef struct {
   PetscReal *sigma;     /* [own][count] */
 } SpaceState;
 
-/* Arrays [own][size] of the step under way: X*, Xhat, the iterate Y, u_inf at X*, forces and velocities. */
+/* Arrays [own][size] of the step under way: X*, Xhat, the iterate Y, K^-1 u_inf at X*, forces and velocities,
+   velocities that are unknowns. */
 typedef struct {
-  PetscReal *Xstar, *Xhat, *Y, *background, *F, *V;
+  PetscReal *Xstar, *Xhat, *Y, *background, *F, *V, *U;
 } SpaceWork;
 
 /* The factors of the own vesicles' problems, and what they were made for: X* [own][size], the tension that pulled
@@ -82,7 +88,7 @@ struct _p_Space {
   SpaceSetting setting;
   Sphere sphere;
   PetscInt count, size; /* coefficients of a tension, of a field */
-  PetscInt unknowns;    /* size + count */
+  PetscInt unknowns;    /* size + count, and size of U where that is an unknown too */
   Vesicle3 *vesicle;    /* [own] */
   PetscBool contrast;   /* some vesicle's ratio of viscosities is not 1 */
   CrossLayer cross;     /* NULL: one vesicle */
@@ -96,7 +102,7 @@ struct _p_Space {
   SpaceWork work;
   Mat A;
   KSP ksp;
-  Vec x, b; /* unknowns (Q, sigma) of the own vesicles, right-hand sides */
+  Vec x, b; /* unknowns (Q, sigma) or (Q, sigma, U) of the own vesicles, right-hand sides */
   Age age;  /* of the factors */
   SpaceFactors made;
 };
@@ -139,18 +145,19 @@ PETSC_EXTERN PetscInt SpaceArrays(Space space, SpaceArray array[SPACE_ARRAYS]);
 /* SpaceRecall - the factors of a run that goes on, made again for what they were made for, space->made. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
 
-/* SpaceMobility - V[own][size] = M F of all vesicles where they have been placed. Collective. */
-PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], PetscReal V[]);
+/* SpaceMobility - V[own][size] = K^-1 [(S + S_o) F + D_o (1 - ratio) U] of all vesicles where they have been placed,
+   the second part where velocities are unknowns. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], const PetscReal U[], PetscReal V[]);
 
 /* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own S and K, of vesicles
    that have been placed at X[own][size]. Nothing is added where the film is thinner than the least. SpaceMeasureFilm -
    the film of X, where the surfaces are placed, the least one and the spacing. SpaceAddTube - V[own][size] += what the
-   tube makes of the forces F[own][size] on other vesicles. SpaceAddThroatFlow - work.background += what a throat makes
-   of the tube's flow. SpaceMeasureThrust - of the membranes' forces, minus work.F, and velocities work.V. Collective.
- */
+   tube makes of the forces F[own][size] on other vesicles, or of their velocities F in its part of the double layer.
+   SpaceAddThroatFlow - work.background += what a throat makes of the tube's flow. SpaceMeasureThrust - of the
+   membranes' forces, minus work.F, and velocities work.V. Collective. */
 PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
-PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, const PetscReal F[], PetscReal V[]);
+PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, NearKernel kernel, const PetscReal F[], PetscReal V[]);
 PETSC_EXTERN PetscErrorCode SpaceAddThroatFlow(Space space);
 PETSC_EXTERN PetscErrorCode SpaceMeasureThrust(Space space);
 

@@ -54,7 +54,7 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
     PetscCall(TubePlace(tube, s->sphere->p, &extent));
   const PetscInt each = s->size * TubeRowCount(tube);
   PetscCall(PetscFree2(s->tube.wall, s->tube.traction));
-  PetscCall(PetscMalloc2(s->share.own * each, &s->tube.wall, s->contrast ? s->share.own * each : 0, &s->tube.traction));
+  PetscCall(PetscCalloc2(s->share.own * each, &s->tube.wall, s->contrast ? s->share.own * each : 0, &s->tube.traction));
   for (PetscInt v = 0; v < s->share.own; v++) {
     const Vesicle3 vesicle = s->vesicle[v];
     PetscReal *T = s->tube.wall + v * each, *Theta = vesicle->K ? s->tube.traction + v * each : NULL;
@@ -66,20 +66,21 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SpaceAddTube(Space s, const PetscReal F[], PetscReal V[]) {
+PetscErrorCode SpaceAddTube(Space s, NearKernel kernel, const PetscReal F[], PetscReal V[]) {
   const Tube tube = s->tube.tube;
   const PetscInt rows = TubeRowCount(tube), each = s->size * rows;
+  const PetscReal *factor = kernel == STRESSLET ? s->tube.traction : s->tube.wall, sign = kernel == STRESSLET ? -1 : 1;
   PetscMPIInt n;
   PetscReal *all, *others;
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(rows, &n));
   PetscCall(PetscCalloc2(rows, &all, rows, &others));
   for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(TubeRows(tube, s->size, s->tube.wall + v * each, 1, F + v * s->size, all));
+    PetscCall(TubeRows(tube, s->size, factor + v * each, sign, F + v * s->size, all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, n, MPIU_REAL, MPI_SUM, s->share.comm));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscCall(PetscArraycpy(others, all, rows));
-    PetscCall(TubeRows(tube, s->size, s->tube.wall + v * each, -1, F + v * s->size, others));
+    PetscCall(TubeRows(tube, s->size, factor + v * each, -sign, F + v * s->size, others));
     PetscCall(TubeAddRows(tube, s->size, s->tube.wall + v * each, others, V + v * s->size));
   }
   PetscCall(PetscFree2(all, others));

@@ -236,6 +236,33 @@ static PetscErrorCode Vesicle3RigidPart(Vesicle3 v, const PetscReal Xstar[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode Vesicle3RemoveMotion(Vesicle3 v, const PetscReal Xstar[], PetscReal U[]) {
+  const PetscInt count = v->count;
+  PetscReal G[9] = {0}, turn[3] = {0};
+  PetscBLASInt pivot[3];
+  PetscBool factored;
+  PetscFunctionBeginUser;
+  U[0] = 0; /* the harmonic of degree 0 is the translation */
+  if (v->at->sphere->symmetry == SPHERE_REVOLVED) PetscFunctionReturn(PETSC_SUCCESS);
+  U[count] = U[2 * count] = 0;
+  for (PetscInt k = 1; k < count; k++)
+    for (int d = 0; d < 3; d++) {
+      const PetscInt at = d * count + k, e = (d + 1) % 3 * count + k, f = (d + 2) % 3 * count + k;
+      turn[d] += Xstar[e] * U[f] - Xstar[f] * U[e];
+      G[4 * d] += PetscSqr(Xstar[e]) + PetscSqr(Xstar[f]);
+      G[3 * d + (d + 1) % 3] -= Xstar[at] * Xstar[e];
+      G[3 * d + (d + 2) % 3] -= Xstar[at] * Xstar[f];
+    }
+  PetscCall(DenseFactor(3, G, pivot, &factored));
+  PetscCall(DenseSolve(3, G, pivot, PETSC_FALSE, 1, turn));
+  for (PetscInt k = 1; k < count; k++)
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      U[d * count + k] -= turn[e] * Xstar[f * count + k] - turn[f] * Xstar[e * count + k];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscReal Xstar[], const PetscReal U[],
                               PetscReal b[]) {
   PetscReal *w, grown = 0;

@@ -69,6 +69,10 @@ PETSC_EXTERN PetscErrorCode Vesicle3Force(Vesicle3 vesicle, const PetscReal x[],
 PETSC_EXTERN PetscErrorCode Vesicle3Velocity(Vesicle3 vesicle, PetscInt columns, PetscReal U[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Rows(Vesicle3 vesicle, const PetscReal x[], const PetscReal U[], PetscReal y[]);
 
+/* Vesicle3RemoveMotion - U[size] less the rigid motion of the shape X*[size] that is nearest to it in coefficients. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode Vesicle3RemoveMotion(Vesicle3 vesicle, const PetscReal Xstar[], PetscReal U[]);
+
 /* Vesicle3Target - b[unknowns], the right-hand sides, without those of u_inf: the labels' rigid part by the last
    velocity U[size] (NULL: none), and the target of the area. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Target(Vesicle3 vesicle, const PetscReal Xhat[], const PetscReal Xstar[],

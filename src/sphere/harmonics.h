@@ -18,8 +18,8 @@ PETSC_EXTERN PetscInt HarmonicsDegree(PetscInt k);
 /* Values and derivatives: Y, Y_theta, Y_phi, Y_theta_theta, Y_theta_phi, Y_phi_phi. */
 enum { HARMONIC, HARMONIC_T, HARMONIC_P, HARMONIC_TT, HARMONIC_TP, HARMONIC_PP, HARMONIC_PARTS };
 
-/* HarmonicsAt - table[part][count][n] at n points; parts 1 (values) or HARMONIC_PARTS, for which no point may be a
-   pole. Not collective. Errors: memory. */
+/* HarmonicsAt - table[part][count][n] at n points, of the first `parts` parts; where those have derivatives, no point
+   may be a pole. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
                                         PetscInt parts, PetscReal table[]);
 

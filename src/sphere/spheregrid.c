@@ -202,7 +202,7 @@ PetscErrorCode SphereCreate(PetscInt p, SphereSymmetry symmetry, Sphere *out) {
   PetscCall(PetscMalloc1(s->size, &s->degree));
   for (PetscInt k = 0; k < s->size; k++)
     s->degree[k] = symmetry == SPHERE_WHOLE ? HarmonicsDegree(k % s->count) : k <= p ? k : k - p;
-  PetscCall(SphereTableCreate(p, p, symmetry, 1, &s->shape));
+  PetscCall(SphereTableCreate(p, p, symmetry, HARMONIC_P + 1, &s->shape));
   PetscCall(SphereTableCreate(p, 2 * p, symmetry, HARMONIC_PARTS, &s->fine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

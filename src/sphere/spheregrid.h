@@ -66,7 +66,7 @@ struct _p_Sphere {
   PetscInt count;     /* coefficients of a scalar */
   PetscInt size;      /* coefficients of a field */
   PetscInt *degree;   /* [size] of a field's harmonics */
-  SphereTable shape;  /* degree p, values: targets of layers, points that are shown */
+  SphereTable shape;  /* degree p, with first derivatives: targets of layers, points that are shown */
   SphereTable fine;   /* degree 2p, with derivatives: bending, area */
   TurnedGrids turned; /* degree 3p/2, poles at the points of `shape`; made when first used */
   TurnedGrids normal; /* these points with harmonics of degree 2p; made when first used */
@@ -81,7 +81,8 @@ PETSC_EXTERN PetscErrorCode SphereDestroy(Sphere *sphere);
    collective. */
 PETSC_EXTERN PetscErrorCode SphereTurn(Sphere sphere, PetscBool normals);
 
-/* SphereTableCreate - of harmonics of degree p at most on a grid of degree q; parts as in HarmonicsAt. Not collective.
+/* SphereTableCreate - of harmonics of degree p at most on a grid of degree q; parts: of those of HarmonicsAt, the
+   first ones. Not collective.
  */
 PETSC_EXTERN PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, PetscInt parts,
                                               SphereTable *table);

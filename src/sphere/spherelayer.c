@@ -79,19 +79,23 @@ static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt la
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void LayerNormals(PetscInt n, const PetscReal theta[], const PetscReal T[], const PetscReal P[], PetscReal a[]) {
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(theta[i]);
+    }
+}
+
 /* Coefficients of degree 2p of n dA/domega, a polynomial of that degree. */
-static PetscErrorCode LayerNormals(Sphere s, const PetscReal c[], PetscReal m[]) {
+static PetscErrorCode LayerNormalFields(Sphere s, const PetscReal c[], PetscReal m[]) {
   const PetscInt n = s->fine.grid.n;
   PetscReal *T, *P, *a;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(3 * n, &T, 3 * n, &P, 3 * n, &a));
   PetscCall(SphereFieldValues(&s->fine, HARMONIC_T, c, T));
   PetscCall(SphereFieldValues(&s->fine, HARMONIC_P, c, P));
-  for (PetscInt i = 0; i < n; i++)
-    for (int d = 0; d < 3; d++) {
-      const int e = (d + 1) % 3, f = (d + 2) % 3;
-      a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(s->fine.grid.theta[i]);
-    }
+  LayerNormals(n, s->fine.grid.theta, T, P, a);
   PetscCall(SphereFieldProject(&s->twice, a, m));
   PetscCall(PetscFree3(T, P, a));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -143,7 +147,7 @@ PetscErrorCode SphereLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscRea
   PetscFunctionBeginUser;
   PetscCall(SphereTurn(s, kernel->normal));
   if (kernel->normal) PetscCall(PetscMalloc1(3 * HarmonicsCount(2 * s->p), &m));
-  if (kernel->normal) PetscCall(LayerNormals(s, c, m));
+  if (kernel->normal) PetscCall(LayerNormalFields(s, c, m));
   PetscCall((s->symmetry == SPHERE_WHOLE ? WholeLayerMatrix : MeridianLayerMatrix)(s, kernel, c, m, M));
   PetscCall(PetscFree(m));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -29,6 +29,11 @@ PETSC_EXTERN const Kernel3 Stokeslet3, Stresslet3;
 PETSC_EXTERN PetscErrorCode SphereLayerMatrix(Sphere sphere, const Kernel3 *kernel, const PetscReal c[], PetscReal M[]);
 PETSC_EXTERN PetscErrorCode SphereSingleLayer(Sphere sphere, PetscReal nu, const PetscReal c[], PetscReal M[]);
 
+/* LayerNormals - a[3][n] = n dA/domega at n points, from the derivatives T[3][n] and P[3][n] of X by theta and phi. Not
+   collective. */
+PETSC_EXTERN void LayerNormals(PetscInt n, const PetscReal theta[], const PetscReal T[], const PetscReal P[],
+                               PetscReal a[]);
+
 /* MeridianLayerMatrix - SphereLayerMatrix of a body of revolution; m: coefficients of degree 2p of n dA/domega, where
    the kernel has a normal. Not collective. */
 PETSC_EXTERN PetscErrorCode MeridianLayerMatrix(Sphere sphere, const Kernel3 *kernel, const PetscReal c[],

@@ -21,7 +21,8 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
     all[v * size + along * count] += v * r * one;
   }
   TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
-  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, (Contact3Law){0}, &cross));
+  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, (Contact3Law){0}, NEAR_KERNELS,
+                            &cross));
   TestCall(CrossLayerPlace(cross, all + first * size));
   CHECK(PetscAbsReal(cross->gap - (r - 1.6)) < 1e-2 * r, "degree %d: the gap of spheres %g apart is %.4f", (int)p, r,
         cross->gap);
@@ -30,7 +31,7 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
                     want = (d == along ? 2 - 2 * a2 : 1 + a2) / (8 * PETSC_PI * nu * r);
     for (PetscInt k = 0; k < 2 * size; k++) F[k] = U[k] = sum[k] = 0;
     if (first == 0 && own) F[d * count] = 1 / one; /* a unit force on the first sphere */
-    TestCall(CrossLayerAdd(cross, F, U));
+    TestCall(CrossLayerAdd(cross, STOKESLET, F, U));
     for (PetscInt k = 0; k < own * size; k++) sum[first * size + k] = U[k];
     TestSum((PetscMPIInt)(2 * size), sum);
     const PetscReal off = PetscAbsReal(sum[size + d * count] / one / want - 1);
@@ -38,6 +39,65 @@ static void CheckSpheres(PetscInt p, PetscReal r, int along, PetscReal most) {
           (int)p, r, "xyz"[along], "xyz"[d], off);
   }
   TestCall(CrossLayerDestroy(&cross));
+  TestCall(SphereDestroy(&sphere));
+}
+
+/* What the flow U = A x + B of a fluid inside the first of two ellipsoids, without divergence, does to the other by its
+   double layer and by the single layer of its tractions nu (A + A^T) n, which are nothing together; that of a rigid
+   motion is nothing alone. apart: the distance of the centers. */
+static void CheckDoubleLayer(PetscInt p, PetscReal apart, PetscReal most) {
+  static const PetscReal flow[3][3][3] = {{{0, 0.5, -0.3}, {-0.5, 0, 0.8}, {0.3, -0.8, 0}},
+                                          {{1, 0.2, 0}, {0.6, -0.3, 0.4}, {0, 0.7, -0.7}},
+                                          {{0.3, 0, 0.9}, {-0.2, 0.5, 0}, {0, 0.1, -0.8}}};
+  const PetscInt count = HarmonicsCount(p), size = 3 * count;
+  const PetscReal nu = 0.7, one = PetscSqrtReal(4 * PETSC_PI);
+  PetscMPIInt rank, ranks;
+  Sphere sphere;
+  Surface surface;
+  CrossLayer cross;
+  TestCall(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  const PetscInt first = 2 * rank / ranks, own = 2 * (rank + 1) / ranks - first;
+  PetscReal *all = TestReals(2 * size);
+  SurfaceEllipsoid(p, (PetscReal[]){1.3, 0.9, 0.85}, all);
+  SurfaceEllipsoid(p, (PetscReal[]){1.2, 0.8, 0.9}, all + size);
+  ShapeAlign(count, (PetscReal[]){1, 0.3, 0.2}, (PetscReal[]){0, 0, apart}, all + size);
+  TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
+  TestCall(SurfaceCreate(sphere, &surface));
+  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, nu, (Contact3Law){0}, NEAR_KERNELS,
+                            &cross));
+  TestCall(CrossLayerPlace(cross, all + first * size));
+  TestCall(SurfacePlace(surface, all, PETSC_FALSE));
+  const PetscInt n = surface->n;
+  PetscReal *f = TestReals(3 * n), *F = TestReals(2 * size), *V = TestReals(2 * size), *U = TestReals(2 * size);
+  for (int q = 0; q < 3; q++) {
+    PetscReal off[2] = {0};
+    for (PetscInt k = 0; k < 2 * size; k++) F[k] = V[k] = U[k] = 0;
+    for (PetscInt i = 0; i < n; i++)
+      for (int d = 0; d < 3; d++) {
+        f[d * n + i] = 0;
+        for (int e = 0; e < 3; e++)
+          f[d * n + i] += nu * (flow[q][d][e] + flow[q][e][d]) * surface->normal[e * n + i] * surface->J[i];
+      }
+    if (first == 0 && own) {
+      TestCall(SphereFieldProject(&sphere->fine, f, F));
+      for (int d = 0; d < 3; d++) {
+        for (int e = 0; e < 3; e++)
+          for (PetscInt k = 0; k < count; k++) V[d * count + k] += flow[q][d][e] * all[e * count + k];
+        V[d * count] += 0.4 * one;
+      }
+    }
+    TestCall(CrossLayerAdd(cross, STRESSLET, V, U));
+    for (PetscInt k = 0; k < own * size; k++) off[0] = PetscMax(off[0], PetscAbsReal(U[k]));
+    TestCall(CrossLayerAdd(cross, STOKESLET, F, U));
+    for (PetscInt k = 0; k < own * size; k++) off[1] = PetscMax(off[1], PetscAbsReal(U[k]));
+    TestMost(2, off);
+    CHECK(off[1] < most && (q || off[0] < most),
+          "degree %d, gap %.3f, flow %d: double layer %.1e, with the single one %.1e", (int)p, cross->gap, q, off[0],
+          off[1]);
+  }
+  TestCall(CrossLayerDestroy(&cross));
+  TestCall(SurfaceDestroy(&surface));
   TestCall(SphereDestroy(&sphere));
 }
 
@@ -57,7 +117,7 @@ static void CheckContact(PetscInt p, PetscReal gap, PetscReal W, PetscReal B) {
   PetscReal *all = TestReals(2 * size), *G = TestReals(2 * size), *change = TestReals(2 * size), energy[3],
             force[2][3] = {{0}};
   TestCall(SphereCreate(p, SPHERE_WHOLE, &sphere));
-  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, 1, law, &cross));
+  TestCall(CrossLayerCreate(sphere, (VesicleShare){PETSC_COMM_WORLD, 2, first, own}, 1, law, 1, &cross));
   for (int k = 2; k >= 0; k--) { /* the second sphere a little nearer, a little farther, in its place */
     SurfaceEllipsoid(p, (PetscReal[]){a, a, a}, all);
     SurfaceEllipsoid(p, (PetscReal[]){b, b, b}, all + size);
@@ -138,8 +198,8 @@ static void CheckStep(PetscReal ratio) {
     F[k] = TestRandom(&seed);
     G[k] = TestRandom(&seed);
   }
-  TestCall(SpaceMobility(s, F, U));
-  TestCall(SpaceMobility(s, G, V));
+  TestCall(SpaceMobility(s, F, F, U));
+  TestCall(SpaceMobility(s, G, G, V));
   work[0] = TestProduct(own * size, G, U);
   work[1] = TestProduct(own * size, F, V);
   TestSum(2, work);
@@ -149,6 +209,44 @@ static void CheckStep(PetscReal ratio) {
   TestCall(SpaceDestroy(&s));
   TestCall(SurfaceDestroy(&surface));
   TestCall(SphereDestroy(&sphere));
+}
+
+/* Two spheres of fluid 1e5 times as viscous that sink beside one another are solid: along the line of centers they have
+   the drag of Stimson and Jeffery over Stokes's, across it with s = r/a the mobility 1 + 3/(4s) + 1/(2s^3) - 17/(16s^6)
+   of reflections. */
+static void CheckSolidPair(PetscInt p, PetscReal s, int along, PetscReal most) {
+  const PetscInt count = HarmonicsCount(p), size = 3 * count;
+  const PetscReal one = PetscSqrtReal(4 * PETSC_PI), rate = 0, alpha = PetscAcoshReal(s / 2), weight = 3;
+  PetscReal *X = TestReals(2 * size), sinking[2] = {0}, want[3], drag = 0;
+  Vesicle3Setting material[2];
+  Space space;
+  for (PetscInt n = 1; n < 200; n++) {
+    const PetscReal m = 2 * (PetscReal)n + 1, over = 2 * PetscSinhReal(m * alpha) + m * PetscSinhReal(2 * alpha),
+                    part = 4 * PetscSqr(PetscSinhReal(m * alpha / 2)) - PetscSqr(m * PetscSinhReal(alpha));
+    drag += 4. / 3 * PetscSinhReal(alpha) * (PetscReal)(n * (n + 1)) / ((m - 2) * (m + 2)) * (1 - part / over);
+  }
+  for (int d = 0; d < 3; d++) want[d] = 1 + 0.75 / s + 0.5 / (s * s * s) - 17. / 16 / PetscPowRealInt(s, 6);
+  want[along] = 1 / drag;
+  for (int d = 0; d < 3; d++) {
+    for (int v = 0; v < 2; v++) {
+      SurfaceEllipsoid(p, (PetscReal[]){1, 1, 1}, X + v * size);
+      X[v * size + along * count] += v * s * one;
+      material[v] = (Vesicle3Setting){.nu = 0.7, .bending = 0.2, .label_rate = 1, .ratio = 1e5};
+      material[v].weight[d] = weight;
+    }
+    const SpaceSetting setting = {
+        .p = p, .order = 1, .newton = 1, .rtol = 1e-11, .flow = Shear, .context = &rate, .policy = {.base = 0.1}};
+    TestCall(SpaceCreate(PETSC_COMM_WORLD, &setting, 2, material, X, &space));
+    TestCall(SpaceStart(space));
+    for (PetscInt v = 0; v < 2; v++) sinking[v] = 0;
+    for (PetscInt v = 0; v < space->share.own; v++)
+      sinking[space->share.first + v] = space->state.U[v * size + d * count] / one / (weight * 2 / (9 * 0.7));
+    TestSum(2, sinking);
+    CHECK(PetscAbsReal(sinking[0] / want[d] - 1) < most && PetscAbsReal(sinking[1] / sinking[0] - 1) < 1e-4,
+          "degree %d, viscous spheres %g apart along %c sink along %c %.6f times as fast as one, solid ones %.6f",
+          (int)p, s, "xyz"[along], "xyz"[d], sinking[0], want[d]);
+    TestCall(SpaceDestroy(&space));
+  }
 }
 
 static void CheckShapes(void) {
@@ -189,9 +287,13 @@ void Facts(void) {
     CheckSpheres(8, 1.7, along, 1e-4);
     CheckSpheres(8, 1.62, along, 1e-4);
   }
+  for (PetscInt p = 8; p <= 12; p += 4)
+    for (int q = 0; q < 6; q++) CheckDoubleLayer(p, 1.75 + 0.04 * (1 << q), p == 8 ? 3e-3 : 1.5e-3);
   CheckContact(8, 0.2, 0, 0);
   CheckContact(8, 0.08, 0, 0);
   CheckContact(8, 0.2, 0.3, 0.3);
+  CheckSolidPair(8, 4, 0, 1e-4);
+  CheckSolidPair(8, 6, 2, 1e-4);
   CheckStep(1);
   CheckStep(5);
 }
