@@ -21,6 +21,10 @@ STUDIES = {
     "accuracy": ("accuracy.page", "accuracy per cell: docs/accuracy"),
     "inertia": ("inertia.page", "the fluid's inertia: docs/inertia"),
     "gallery": ("gallery.page", "what the field runs, beside published results: docs/gallery.md"),
+    "narrow": (
+        "gallery.narrow",
+        "vesicles that nearly fill a tube, beside lubrication theory: docs/gallery/narrow.csv",
+    ),
     "time": ("time.page", "what the time step leaves, by order and frame of the labels: docs/time"),
 }
 """The module whose `write` makes each study's files, and what it studies."""

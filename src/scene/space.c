@@ -74,7 +74,7 @@ static PetscBool SceneAlongAxis(const RealList *list, PetscBool alike) {
 /* clang-format off */
 static PetscErrorCode SceneResolveAxial(Draft s) {
   SceneTube *tube = &s->space.tube;
-  const PetscBool in_tube = (PetscBool)(tube->radius > 0), driven = SceneGiven(s, "-tube_pressure_drop");
+  const PetscBool in_tube = (PetscBool)(tube->radius > 0), driven = (PetscBool)(tube->pressure_drop != 0);
   const PetscInt flow = s->flow.type;
   PetscFunctionBeginUser;
   if (s->dim != DIM_AXIAL) PetscFunctionReturn(PETSC_SUCCESS);

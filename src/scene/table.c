@@ -283,6 +283,8 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
                                              {"-flow_chi", "-flow_ca_stretching"},
                                              {"-flow_ca_stretching", "-flow_rate"},
                                              {"-flow_ca", "-flow_peak_velocity"},
+                                             {"-tube_pressure_drop", "-flow_peak_velocity"},
+                                             {"-tube_pressure_drop", "-flow_ca"},
                                              {"-vesicle_semi_axes", "-vesicle_area"},
                                              {"-vesicle_semi_axes", "-vesicle_reduced_area"},
                                              {"-vesicle_half_axes", "-vesicle_radius"},
@@ -312,6 +314,7 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
   const char *skip[12] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca", "-flow_ca_stretching"};
   PetscInt skipped = 5;
   PetscFunctionBeginUser;
+  if (scene->space.tube.pressure_drop != 0) skip[skipped++] = "-flow_peak_velocity";
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */
   if (!by_area || (packed && counted)) skip[skipped++] = "-vesicle_area";
