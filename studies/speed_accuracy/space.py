@@ -1,4 +1,5 @@
-"""What -scheme_auto chooses by in three dimensions: errors of degree and step-size control, of one vesicle in shear."""
+"""What -scheme_auto chooses by in three dimensions: errors of degree and step-size control, of one vesicle in shear
+and of one in a tube."""
 
 from __future__ import annotations
 
@@ -17,6 +18,10 @@ TWICE = (0.95, 0.8)
 """Reduced volumes of the stiffest membranes that two Newton steps a time step are tried with."""
 STARTS = {0: (0.99, 0.95, 0.9, 0.8, 0.7), 60: (0.9,), -20: (0.9,)}
 """Angles of the long axis at the start, in degrees, and reduced volumes; at the last the flow compresses the vesicle."""
+
+RADII, NUMBERS = (1.1, 1.3, 2), (1, 10)
+"""Of tubes over R0, and of nu V R0^2/kappa, V the mean velocity."""
+TUBE_DEGREES, TUBE_TOLERANCES = (6, 8, 10, 12, 14, 16, 20), ("1e-2", "1e-3", "1e-4")
 
 
 def _finest(volume: float) -> int:
@@ -46,6 +51,46 @@ def _error(found: dict, fine: dict) -> float:
     return float(np.abs(apart).max() / abs(theirs[-1]))
 
 
+def _measure_tube(series: Series, folder: Path) -> dict[str, object]:
+    """Return speed and extra pressure drop at multiples of 0.5."""
+    at = np.isclose(series["time"] * 2, np.round(series["time"] * 2), atol=1e-9)
+    numbers = {name: series[name][at][1:].tolist() for name in ("velocity_x", "pressure_drop_extra")}
+    return {"steps": len(series["time"]) - 1} | numbers
+
+
+def _run_tube(results: Results, volume: float, radius: float, number: float, degree: int, steps: str) -> dict:
+    options = words(f"-dim axisymmetric -flow_type tube -flow_peak_velocity 2 -tube_radius {radius:g} {steps}")
+    options |= words(f"-vesicle_reduced_volume {volume:g} -vesicle_bending {1 / number:g} -sphere_degree {degree}")
+    options |= words("-output_every 0.5 -checkpoint_every 0 -time_end 2")
+    name = f"tube_{volume:g}_{radius:g}_{number:g}_{degree}_{'_'.join(words(steps).values())}"
+    return results.get(Case(name, options, _measure_tube, may_fail=True))
+
+
+def _tube_error(found: dict, fine: dict) -> float:
+    """Return the largest error of speed and pressure drop on the way, over the largest of each."""
+    if "failed" in found:
+        return np.inf
+    pairs = [(np.array(found[name]), np.array(fine[name])) for name in ("velocity_x", "pressure_drop_extra")]
+    return max(float(np.abs(ours - theirs).max() / np.abs(theirs).max()) for ours, theirs in pairs)
+
+
+def _tube_rows(results: Results) -> list[dict[str, object]]:
+    """Return the errors of degrees at equal steps, and those of tolerances at equal degrees, of vesicles in tubes."""
+    made = []
+    for volume, radius, number in product(VOLUMES, RADII, NUMBERS):
+        equal, adapt = "-time_step 0.02 -bending_newton 2", "-time_step 0.05 -time_adapt error -time_adapt_max_step 0.5"
+        tables = {
+            "tube_degree": [(d, d, equal) for d in (*TUBE_DEGREES, 28)],
+            "tube_tol": [(t, 16, f"{adapt} -time_adapt_tol {t}") for t in (*TUBE_TOLERANCES, FINE)],
+        }
+        for table, runs in tables.items():
+            *found, fine = (_run_tube(results, volume, radius, number, degree, steps) for _, degree, steps in runs)
+            for (value, *_), one in zip(runs, found):
+                row = {"table": table, "scene": f"v={volume:g} R={radius:g} number={number:g}", "value": value}
+                made.append(row | {"error": _tube_error(one, fine), "steps": one.get("steps", ""), "solves": ""})
+    return made
+
+
 def rows(results: Results) -> list[dict[str, object]]:
     """Return the errors of degrees at equal steps, and those of tolerances at equal degrees."""
     made = []
@@ -73,4 +118,4 @@ def rows(results: Results) -> list[dict[str, object]]:
             fine = run(FINE)
             for tolerance in TOLERANCES:
                 add(f"space_tol_{newton}", volume, chi, start, tolerance, run(tolerance), fine)
-    return made
+    return made + _tube_rows(results)
