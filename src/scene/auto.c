@@ -257,6 +257,8 @@ PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
      "-scheme_auto {-scheme_auto}: outside of what was measured; allowed: 0, or 1e-4 to 0.1"},
     {SceneIsProjection(s),
      "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"},
+    {stage == AUTO_SPACE && s->dim == DIM_AXIAL && !SceneSpaceMeasured(s),
+     "-scheme_auto {-scheme_auto}: outside of what was measured with -dim axisymmetric; allowed: 1e-3 to 0.1, one prolate spheroid of -vesicle_reduced_volume 0.7 or more, 0.8 below 1e-2, in a tube of 1.1 to 2 R0 without a throat, in -flow_type tube of a mean velocity of 1 to 10 kappa/(nu R0^2), without viscosity ratio or gravity"},
     {stage == AUTO_SPACE && !SceneSpaceMeasured(s),
      "-scheme_auto {-scheme_auto}: outside of what was measured with -dim 3; allowed: one spheroid of -vesicle_reduced_volume 0.7 or more, 0.8 below 1e-3, in -flow_type shear, rate nu R0^3/kappa 1 to 100, without viscosity ratio or gravity"}};
   /* clang-format on */
@@ -331,10 +333,13 @@ static PetscErrorCode AutoReportMarkers(Scene scene) {
 
 PetscErrorCode SceneReport(Scene s) {
   PetscFunctionBeginUser;
-  const PetscBool space = s->dim == DIM_SPACE;
+  const PetscBool space = s->dim != DIM_PLANE;
   if (s->scheme.wanted > 0 && (space || s->shape.vesicles)) {
     PetscCall(PetvesSay(s->comm, "petves: -scheme_auto %g, by the worst errors measured (docs/%s.md)\n",
-                        (double)s->scheme.wanted, space ? "space" : "settings"));
+                        (double)s->scheme.wanted,
+                        s->dim == DIM_AXIAL ? "axisymmetric"
+                        : space             ? "space"
+                                            : "settings"));
     for (int k = 0; k < AUTO_SETTINGS; k++)
       if ((settings[k].stage == AUTO_SPACE) == space)
         PetscCall(AutoReportSetting(s, settings[k].name, s->scheme.reason[k]));

@@ -9,12 +9,15 @@ static PetscBool SpaceSolvesVelocities(Space s) {
   return (PetscBool)(s->unknowns > s->size + s->count);
 }
 
-/* V += D_o (1 - ratio) U. */
+/* V += D_o (1 - ratio) U. The double layer of a rigid motion is nothing outside, but for an error which the viscosity
+   inside would amplify. */
 static PetscErrorCode SpaceAddDoubleLayers(Space s, const PetscReal U[], PetscReal V[]) {
   PetscReal *jump;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->share.own * s->size, &jump));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) jump[k] = (1 - s->vesicle[k / s->size]->setting.ratio) * U[k];
+  for (PetscInt v = 0; v < s->share.own; v++)
+    PetscCall(Vesicle3RemoveMotion(s->vesicle[v], s->work.Xstar + v * s->size, jump + v * s->size));
   PetscCall(CrossLayerAdd(s->cross, STRESSLET, jump, V));
   if (s->tube.tube) PetscCall(SpaceAddTube(s, STRESSLET, jump, V));
   PetscCall(PetscFree(jump));

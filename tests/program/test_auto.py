@@ -290,11 +290,11 @@ def test_film_at_the_start(tmp_path):
     assert "TOO THIN" not in chosen.stdout and "grid: none, unbounded fluid: enough\n" in chosen.stdout
 
 
-def measured_in_space(volume: float, degree: int) -> float:
+def measured_in_space(volume: float, degree: int, table: str = "degree") -> float:
     """Worst error of a degree at reduced volumes from this one up to the next that has a degree of its own."""
     group = {0.95: (0.95, 0.99)}.get(volume, (volume,))
     with CALIBRATION.open() as file:
-        rows = [row for row in csv.DictReader(file) if row["table"] == "degree" and row["value"] == str(degree)]
+        rows = [row for row in csv.DictReader(file) if row["table"] == table and row["value"] == str(degree)]
     return max(float(row["error"]) for row in rows if any(f"v={v:g} " in row["scene"] for v in group))
 
 
@@ -309,6 +309,23 @@ def test_degree_and_steps_are_what_was_measured(wanted, tmp_path):
             worst = measured(table, value) if table else measured_in_space(volume, int(value))
             assert float(re.search(r"leaves? up to (\S+)", why)[1]) == pytest.approx(worst, rel=0.06), (name, volume)
             assert worst <= wanted / 2, (name, volume)
+
+
+@pytest.mark.parametrize("wanted", (0.1, 1e-2, 1e-3))
+def test_vesicle_in_a_tube(wanted, tmp_path):
+    """Printed errors are the worst of the calibration, and the speed is that of test_axisymmetric.py."""
+    tube = "-dim axisymmetric -flow_type tube -flow_peak_velocity 2 -vesicle_bending 1 -tube_radius 1.3"
+    for volume in (0.95, 0.9, 0.8, 0.7)[: 4 if wanted > 1e-3 else 3]:
+        scene = f"{tube} -vesicle_reduced_volume {volume} -time_end {20 if volume == 0.9 else 0} {QUIET}"
+        run = run_petves(tmp_path / f"{volume}", f"{scene} -scheme_auto {wanted}")
+        for name in ("-sphere_degree", "-time_adapt_tol"):
+            value, why = settings(run.stdout)[name]
+            degree = name == "-sphere_degree"
+            worst = measured_in_space(volume, int(value), "tube_degree") if degree else measured("tube_tol", value)
+            assert float(re.search(r"leaves? up to (\S+)", why)[1]) == pytest.approx(worst, rel=0.06), (name, volume)
+            assert worst <= wanted / 2, (name, volume)
+        if volume == 0.9:
+            assert run.series["velocity_x"][-1] == pytest.approx(1.52206, rel=wanted)
 
 
 @pytest.mark.parametrize("wanted, volume, angle", [(0.1, 0.95, 0.180015), (1e-2, 0.9, 0.153393), (1e-3, 0.9, 0.153393)])
