@@ -127,7 +127,6 @@ typedef struct {
   PetscInt step, past, order, solved, level;
   PetscReal t, dt_last[BDF_MOST]; /* of the present state and those before it */
   PetscReal made;                 /* a0 of the factors */
-  PetscReal thrust, left;         /* of SpaceTube */
   PetscReal age[AGE_MEMORY];
 } SpaceNumbers;
 typedef struct {

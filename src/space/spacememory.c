@@ -8,9 +8,7 @@ SpaceNumbers SpaceGetNumbers(Space s) {
                     .solved = s->state.solved,
                     .level = s->plan.level,
                     .t = s->state.t,
-                    .made = s->made.a0,
-                    .thrust = s->tube.thrust,
-                    .left = s->tube.left};
+                    .made = s->made.a0};
   n.dt_last[0] = s->state.dt_last;
   for (int j = 1; j < BDF_MOST; j++) n.dt_last[j] = s->old[j - 1].dt_last;
   AgeGetMemory(&s->age, n.age);
@@ -25,8 +23,6 @@ void SpaceSetNumbers(Space s, const SpaceNumbers *n) {
   s->past = n->past;
   s->order = n->order;
   s->plan.level = n->level;
-  s->tube.thrust = n->thrust;
-  s->tube.left = n->left;
   for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = n->dt_last[j];
   s->made.a0 = n->made;
   s->age = AgeSetMemory(n->age);

@@ -152,11 +152,11 @@ static const char *SpaceWarning(const void *model, PetscInt i) {
 static PetscErrorCode SpaceMoveNumbers(SpaceModel m, H5File *file, PetscBool write, PetscInt *frames) {
   SpaceNumbers n = SpaceGetNumbers(m->space);
   PetscInt whole[] = {n.step, n.past, n.order, n.solved, *frames, m->its, n.level};
-  PetscReal real[4 + BDF_MOST + AGE_MEMORY] = {n.t, n.made, n.thrust, n.left};
-  const PetscInt reals = 4 + BDF_MOST + AGE_MEMORY;
+  PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
+  const PetscInt reals = 2 + BDF_MOST + AGE_MEMORY;
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(real + 4, n.dt_last, BDF_MOST));
-  PetscCall(PetscArraycpy(real + 4 + BDF_MOST, n.age, AGE_MEMORY));
+  PetscCall(PetscArraycpy(real + 2, n.dt_last, BDF_MOST));
+  PetscCall(PetscArraycpy(real + 2 + BDF_MOST, n.age, AGE_MEMORY));
   const CheckpointNumber all[] = {{"numbers", 0, 0, whole, NULL, 7}, {"times", 0, 0, NULL, real, reals}};
   PetscCall(CheckpointMoveNumbers(file, write, 2, all));
   if (write) PetscFunctionReturn(PETSC_SUCCESS);
@@ -170,11 +170,9 @@ static PetscErrorCode SpaceMoveNumbers(SpaceModel m, H5File *file, PetscBool wri
                      .solved = whole[3],
                      .level = whole[6],
                      .t = real[0],
-                     .made = real[1],
-                     .thrust = real[2],
-                     .left = real[3]};
-  PetscCall(PetscArraycpy(n.dt_last, real + 4, BDF_MOST));
-  PetscCall(PetscArraycpy(n.age, real + 4 + BDF_MOST, AGE_MEMORY));
+                     .made = real[1]};
+  PetscCall(PetscArraycpy(n.dt_last, real + 2, BDF_MOST));
+  PetscCall(PetscArraycpy(n.age, real + 2 + BDF_MOST, AGE_MEMORY));
   SpaceSetNumbers(m->space, &n);
   *frames = whole[4];
   m->its = whole[5];
