@@ -2,7 +2,9 @@
 #include "scene/auto.h"
 #include "scene/flow3.h"
 
-#define RINGS_ON_THROAT 4 /* spaces of the throat's rings that its radius and its depth have at least */
+#define ON_THROAT 24 /* spaces of the throat's rings that its radius has at least */
+#define ON_DEPTH 4   /* and its depth */
+#define STEEPEST 0.2 /* mouth over the depth, at least */
 
 static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   PetscFunctionBeginUser;
@@ -46,12 +48,15 @@ static PetscErrorCode SpaceCheckPassage(Scene s, Space space) {
 /* That rings can resolve the throat. */
 static PetscErrorCode SpaceCheckThroat(Scene s, Throat throat) {
   const SceneTube *tube = &s->space.tube;
-  const PetscReal least = RINGS_ON_THROAT * ThroatLeastFilm(throat);
+  const PetscReal space = ThroatLeastFilm(throat), depth = tube->radius - tube->throat;
   PetscFunctionBeginUser;
-  PetvesCheck(tube->throat >= least && tube->radius - tube->throat >= least, s->comm,
+  PetvesCheck(tube->throat >= ON_THROAT * space && depth >= ON_DEPTH * space, s->comm,
               "-tube_throat %g: too narrow or too shallow for a throat of this length; allowed: from %g to %g, or a "
               "shorter -tube_throat_length and -tube_throat_mouth",
-              (double)tube->throat, (double)least, (double)(tube->radius - least));
+              (double)tube->throat, (double)(ON_THROAT * space), (double)(tube->radius - ON_DEPTH * space));
+  PetvesCheck(tube->throat_mouth >= STEEPEST * depth, s->comm,
+              "-tube_throat_mouth %g: too steep for rings; allowed: from %g", (double)tube->throat_mouth,
+              (double)(STEEPEST * depth));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

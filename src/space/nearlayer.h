@@ -17,8 +17,8 @@
    such parts too, and they are as smooth. A term in brackets is as smooth as its smallest width, and all but G itself
    are short. The first one is summed on the grids of degree p, G by CrossLayerAdd and -L(delta_0) here; the k-th on
    grids 2^k times as fine, whose points are made only where the other surface is in reach. A grid of degree q has q + 1
-   = 2^k (p + 1) latitudes, so that each of its points lies in a cell of the grid before, and near the poles it has fewer
-   longitudes. */
+   = 2^k (p + 1) latitudes, so that each of its points lies in a cell of the grid before, and near the poles it has
+   fewer longitudes. */
 #pragma once
 #include "sphere/spheregrid.h"
 

@@ -1,10 +1,11 @@
 #include "space/throat.h"
 #include "numerics/blas.h"
 
-#define ON_MOUTH 40 /* spaces between rings on a mouth at least */
-#define ON_DEPTH 12 /* spaces between rings on the depth R - R_t and on R_t at least, as lengths */
-#define FAR 8.      /* radii beyond which flows without flux are nothing but rounding */
-#define NEAREST 0.6 /* of a space: rings nearer to the tube are left out */
+#define ON_MOUTH 40  /* spaces between rings on a mouth at least */
+#define ON_DEPTH 12  /* spaces between rings on the depth R - R_t at least, as lengths */
+#define ON_RADIUS 32 /* and on R_t: wider spaces let fluid through the wall, the more, the longer the throat is */
+#define FAR 8.       /* radii beyond which flows without flux are nothing but rounding */
+#define NEAREST 0.6  /* of a space: rings nearer to the tube are left out */
 #define MOST_SPACES ((PetscInt)(NEAREST * TUBE_MOST_LENGTHS)) /* those that the tube has nodes for */
 
 struct _p_Throat {
@@ -197,7 +198,8 @@ static PetscErrorCode ThroatMakeFactor(Throat t) {
 
 PetscErrorCode ThroatPlace(Throat t, PetscInt p, const TubeExtent *extent) {
   const PetscReal length = 2 * ThroatReach(t), depth = t->tube->setting.radius - t->setting.radius,
-                  space = PetscMin(t->setting.mouth / ON_MOUTH, PetscMin(depth, t->setting.radius) / ON_DEPTH);
+                  space = PetscMin(t->setting.mouth / ON_MOUTH,
+                                   PetscMin(depth / ON_DEPTH, t->setting.radius / ON_RADIUS));
   TubeExtent with_throat = *extent;
   PetscInt spaces = (PetscInt)PetscCeilReal(length / space);
   PetscFunctionBeginUser;

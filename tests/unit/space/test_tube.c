@@ -55,6 +55,24 @@ static void ThroatDrops(void) {
   }
 }
 
+/* The pressure drop of a long narrow part is that of a tube, 8 L (R_t^-4 - 1) at R = V = 1, more than without it. */
+static void ThroatSlope(PetscReal R, PetscReal length) {
+  PetscReal drop[2];
+  for (int k = 0; k < 2; k++) {
+    Tube tube;
+    Throat throat;
+    TestCall(TubeCreate(&(TubeSetting){.radius = 1}, 1, &tube));
+    TestCall(ThroatCreate(&(ThroatSetting){R, 0, k * length, 1}, tube, &throat));
+    TestCall(ThroatPlace(throat, sphere->p, &(TubeExtent){1, 1, 0, 0, 1}));
+    TestCall(ThroatFlow(throat, TestReals(TubeRowCount(tube)), &drop[k]));
+    TestCall(ThroatDestroy(&throat));
+    TestCall(TubeDestroy(&tube));
+  }
+  const PetscReal slope = (drop[1] - drop[0]) / (PETSC_PI * length), exact = 8 * (PetscPowRealInt(R, -4) - 1);
+  CHECK(PetscAbsReal(slope / exact - 1) < 1e-2, "throat of %g, length %g: drop a length %.4f, %.4f wanted", R, length,
+        slope, exact);
+}
+
 /* Of a flow inside a body, by a unit force on the axis outside of it, what the wall has of its velocities and of its
    tractions is the same in each row, as in the reciprocal theorem. */
 static void CheckTraction(Tube tube, PetscReal nu, const PetscReal T[], const PetscReal Theta[]) {
@@ -159,6 +177,9 @@ void Facts(void) {
         "over a short period forces drive the mean flow, %.1e", TestProduct(sphere->size, F, U) / (mean * thrust) - 1);
   TestCall(TubeDestroy(&tube));
   ThroatDrops();
+  ThroatSlope(0.3, 2);
+  ThroatSlope(0.3, 2.8); /* the longest ones of these radii that a scene may have */
+  ThroatSlope(0.5, 6);
   for (int q = 0; q < 3; q++) CheckFluidInside(R, ratio[q] * R, 1, 1e5, drag[q]);
   CheckFluidInside(R, 0.6 * R, 1.4, 5, 0);
   CheckFluidInside(R, 0.6 * R, 0.7, 0.2, 0);
