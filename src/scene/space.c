@@ -74,8 +74,9 @@ static PetscBool SceneAlongAxis(const RealList *list, PetscBool alike) {
 /* clang-format off */
 static PetscErrorCode SceneResolveAxial(Draft s) {
   SceneTube *tube = &s->space.tube;
-  const PetscBool in_tube = (PetscBool)(tube->radius > 0), driven = (PetscBool)(tube->pressure_drop != 0);
+  const PetscBool in_tube = (PetscBool)(tube->radius > 0), driven = (PetscBool)(tube->period > 0);
   const PetscInt flow = s->flow.type;
+  const PetscReal mouth = tube->throat_mouth > 0 ? tube->throat_mouth : tube->radius;
   PetscFunctionBeginUser;
   if (s->dim != DIM_AXIAL) PetscFunctionReturn(PETSC_SUCCESS);
   const SceneRule rules[] = {
@@ -101,15 +102,17 @@ static PetscErrorCode SceneResolveAxial(Draft s) {
      "-tube_throat {-tube_throat}: not narrower than the tube; allowed: below -tube_radius {-tube_radius}, or 0"},
     {in_tube && tube->throat > 0 && SceneHasContrast(s),
      "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: with -tube_throat {-tube_throat}; allowed in a throat: 1"},
-    {in_tube && !driven && tube->period > 0,
+    {in_tube && driven && !SceneGiven(s, "-tube_pressure_drop"),
      "-tube_period {-tube_period}: without -tube_pressure_drop; allowed: with it, or 0"},
-    {driven && (flow != FLOW_TUBE || tube->period == 0),
+    {in_tube && driven && tube->throat > 0 && tube->period < tube->throat_length + 2 * mouth,
+     "-tube_period {-tube_period}: shorter than the throat and its mouths; allowed: from %g", {tube->throat_length + 2 * mouth}},
+    {tube->pressure_drop != 0 && (flow != FLOW_TUBE || !driven),
      "-tube_pressure_drop {-tube_pressure_drop}: without what it needs; allowed: with -flow_type tube and -tube_period"},
     {driven && (SceneGiven(s, "-flow_peak_velocity") || s->flow.ca != 0),
      "-tube_pressure_drop {-tube_pressure_drop}: with -flow_peak_velocity or -flow_ca; allowed: one of them"}};
   PetscCall(REFUSE(s, rules));
   if (in_tube) s->flow.half_width = tube->radius;
-  if (tube->throat_mouth == 0) tube->throat_mouth = tube->radius;
+  tube->throat_mouth = mouth;
   if (driven) s->flow.peak = tube->pressure_drop * tube->radius * tube->radius / (4 * s->fluid.nu * tube->period);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

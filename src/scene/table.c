@@ -314,7 +314,7 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
   const char *skip[12] = {"-restart", "-output_overwrite", "-flow_chi", "-flow_ca", "-flow_ca_stretching"};
   PetscInt skipped = 5;
   PetscFunctionBeginUser;
-  if (scene->space.tube.pressure_drop != 0) skip[skipped++] = "-flow_peak_velocity";
+  if (scene->space.tube.period > 0) skip[skipped++] = "-flow_peak_velocity";
   if (by_area) skip[skipped++] = "-vesicle_semi_axes";
   if (packed && !counted) skip[skipped++] = "-vesicle_count"; /* of fraction, number and area two say the third */
   if (!by_area || (packed && counted)) skip[skipped++] = "-vesicle_area";

@@ -32,8 +32,8 @@ PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu,
   c->nu = nu;
   c->law = law;
   const PetscInt n = 3 * share.vesicles * c->sphere->shape.grid.n;
-  PetscCall(PetscMalloc4(share.vesicles * c->sphere->size, &c->X, n, &c->points, n, &c->normals,
-                         share.own * share.vesicles, &c->pair));
+  PetscCall(PetscMalloc4(share.vesicles * c->sphere->size, &c->X, n, &c->points, kernels > STRESSLET ? n : 0,
+                         &c->normals, share.own * share.vesicles, &c->pair));
   PetscCall(NearTablesCreate(kernels, &c->tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -79,6 +79,16 @@ static PetscErrorCode SpaceCheckTube(Scene s, Space space) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* That contact reaches no farther than the fine grids of near surfaces do, `reach`. */
+static PetscErrorCode SpaceCheckContact(Scene s, const Contact3Law *law, PetscReal reach) {
+  PetscFunctionBeginUser;
+  PetvesCheck(law->stress <= 0 || law->range + (law->adhesion > 0 ? law->band : 0) <= reach, s->comm,
+              "-contact_repulsion_range %g: with -contact_adhesion_range it reaches farther than -sphere_degree %d has "
+              "fine grids for; allowed: %.3g for both, or a lower degree",
+              (double)law->range, (int)s->space.degree, (double)reach);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SpaceFromScene(Scene s, Space *space) {
   const PetscInt p = s->space.degree, count = s->vesicles.count;
   const SpaceSetting setting = {.p = p,
@@ -126,5 +136,8 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
               "-vesicle_center: vesicles %" PetscInt_FMT " and %" PetscInt_FMT
               " overlap by %.3g; allowed: centers farther from one another",
               cross->nearest[0] + 1, cross->nearest[1] + 1, (double)-cross->gap);
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt v = 0; v < count; v++) least = PetscMin(least, s->space.R0[v]);
+  PetscCall(SpaceCheckContact(s, &setting.repulsion, NearReach(PETSC_PI * least / (PetscReal)(p + 1)) / 2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -189,6 +189,54 @@ PetscErrorCode SpaceRecall(Space s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SpaceGuess(Space s, const BDF *b) {
+  const PetscReal *sigma[BDF_MOST] = {s->state.sigma}, *U[BDF_MOST] = {s->state.U};
+  const PetscInt pair = s->size + s->count;
+  PetscScalar *x;
+  PetscFunctionBeginUser;
+  for (int j = 1; j < BDF_MOST; j++) {
+    sigma[j] = s->old[j - 1].sigma;
+    U[j] = s->old[j - 1].U;
+  }
+  PetscCall(VecGetArrayWrite(s->x, &x));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    PetscScalar *Q = x + v * s->unknowns;
+    for (PetscInt k = 0; k < s->size; k++)
+      Q[k] = b->a0 * (s->work.Xstar[v * s->size + k] - s->work.Xhat[v * s->size + k]);
+    for (PetscInt k = 0; k < s->count; k++) {
+      Q[s->size + k] = 0;
+      for (PetscInt j = 0; j < b->order; j++) Q[s->size + k] += b->star[j] * sigma[j][v * s->count + k];
+    }
+    for (PetscInt k = 0; k < s->unknowns - pair; k++) {
+      Q[pair + k] = 0;
+      for (PetscInt j = 0; j < b->order; j++) Q[pair + k] += b->star[j] * U[j][v * s->size + k];
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(s->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
+  const PetscScalar *x;
+  PetscFunctionBeginUser;
+  *moved = 0;
+  PetscCall(VecGetArrayRead(s->x, &x));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    const PetscReal R = PetscCbrtReal(0.75 / PETSC_PI * s->vesicle[v]->volume);
+    PetscReal sum = 0;
+    for (PetscInt k = 0; k < s->size; k++) {
+      const PetscInt at = v * s->size + k;
+      const PetscReal new = s->work.Xhat[at] + x[v * s->unknowns + k] / a0;
+      sum += PetscSqr(new - s->work.Y[at]);
+      s->work.Y[at] = new;
+    }
+    *moved = PetscMax(*moved, PetscSqrtReal(sum / (4 * PETSC_PI)) / R);
+  }
+  PetscCall(VecRestoreArrayRead(s->x, &x));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moved, 1, MPIU_REAL, MPI_MAX, s->share.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* b = targets - rows of the velocity u_inf - M known, which V becomes; or the targets and this velocity. */
 static PetscErrorCode SpaceRightHandSide(Space s) {
   const PetscInt n = s->size + s->count;

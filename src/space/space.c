@@ -1,8 +1,10 @@
 #include "space/space.h"
 
-#define STILL 1e-6 /* of a step: in which shapes stay, for the first velocities and tensions */
-#define SMOOTH 0.7 /* least gain of a prediction by three states over that by two for order 3 */
-#define PARTS 7    /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
+#define SMALLEST 1e-6 /* of the first step: smaller ones, which follow a lost shape, end the run */
+#define LOST 0.1      /* error of the area or the volume, over it, from which on a shape is lost */
+#define STILL 1e-6    /* of a step: in which shapes stay, for the first velocities and tensions */
+#define SMOOTH 0.7    /* least gain of a prediction by three states over that by two for order 3 */
+#define PARTS 7       /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
 
 static PetscErrorCode SpaceStateCreate(Space s, SpaceState *q) {
   PetscFunctionBeginUser;
@@ -54,6 +56,7 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   s->tube.left = 1;
   if (setting->tube.radius > 0) PetscCall(TubeCreate(&setting->tube, material[0].nu, &s->tube.tube));
   if (setting->throat.radius > 0) PetscCall(ThroatCreate(&setting->throat, s->tube.tube, &s->tube.throat));
+  if (setting->throat.radius > 0) PetscCall(PetscCalloc1(n, &s->tube.flow));
   PetscCall(SpaceSolverCreate(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -67,7 +70,7 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(TubeDestroy(&s->tube.tube));
   PetscCall(ThroatDestroy(&s->tube.throat));
   PetscCall(PetscFree2(s->tube.wall, s->tube.traction));
-  PetscCall(PetscFree(s->tube.drag));
+  PetscCall(PetscFree(s->tube.flow));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
   PetscCall(SpaceStateDestroy(&s->state));
@@ -151,8 +154,8 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
     PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
                             "the film between a vesicle and the tube is %.3g, least is %.3g", (double)s->tube.film,
                             (double)s->tube.least));
-  else if (s->tube.throat)
-    PetscCall(SpaceAddThroatFlow(s));
+  for (PetscInt k = 0; k < s->share.own * s->size && s->tube.throat; k++)
+    s->work.background[k] += s->setting.tube.mean * s->tube.flow[k];
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscBool done;
     PetscCall(Vesicle3Factor(s->vesicle[v], &done));
@@ -169,56 +172,6 @@ static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First guess of the unknowns: Q that leads to X*, tension and velocity of the last states extrapolated. */
-static PetscErrorCode SpaceGuess(Space s, const BDF *b) {
-  const PetscReal *sigma[BDF_MOST] = {s->state.sigma}, *U[BDF_MOST] = {s->state.U};
-  const PetscInt pair = s->size + s->count;
-  PetscScalar *x;
-  PetscFunctionBeginUser;
-  for (int j = 1; j < BDF_MOST; j++) {
-    sigma[j] = s->old[j - 1].sigma;
-    U[j] = s->old[j - 1].U;
-  }
-  PetscCall(VecGetArrayWrite(s->x, &x));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscScalar *Q = x + v * s->unknowns;
-    for (PetscInt k = 0; k < s->size; k++)
-      Q[k] = b->a0 * (s->work.Xstar[v * s->size + k] - s->work.Xhat[v * s->size + k]);
-    for (PetscInt k = 0; k < s->count; k++) {
-      Q[s->size + k] = 0;
-      for (PetscInt j = 0; j < b->order; j++) Q[s->size + k] += b->star[j] * sigma[j][v * s->count + k];
-    }
-    for (PetscInt k = 0; k < s->unknowns - pair; k++) {
-      Q[pair + k] = 0;
-      for (PetscInt j = 0; j < b->order; j++) Q[pair + k] += b->star[j] * U[j][v * s->size + k];
-    }
-  }
-  PetscCall(VecRestoreArrayWrite(s->x, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Y = Xhat + Q/a0; the largest root mean square of its change, over the radius. */
-static PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
-  const PetscScalar *x;
-  PetscFunctionBeginUser;
-  *moved = 0;
-  PetscCall(VecGetArrayRead(s->x, &x));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    const PetscReal R = PetscCbrtReal(0.75 / PETSC_PI * s->vesicle[v]->volume);
-    PetscReal sum = 0;
-    for (PetscInt k = 0; k < s->size; k++) {
-      const PetscInt at = v * s->size + k;
-      const PetscReal new = s->work.Xhat[at] + x[v * s->unknowns + k] / a0;
-      sum += PetscSqr(new - s->work.Y[at]);
-      s->work.Y[at] = new;
-    }
-    *moved = PetscMax(*moved, PetscSqrtReal(sum / (4 * PETSC_PI)) / R);
-  }
-  PetscCall(VecRestoreArrayRead(s->x, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moved, 1, MPIU_REAL, MPI_MAX, s->share.comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Known forces of repulsion: those at X*, and those of the way from there to Xhat. */
 static PetscErrorCode SpaceAddContact(Space s) {
   PetscReal *change = s->work.V, *G = s->work.F;
@@ -230,6 +183,23 @@ static PetscErrorCode SpaceAddContact(Space s) {
   PetscCall(CrossLayerAddRepulsion(s->cross, G));
   PetscCall(CrossLayerAddStiffness(s->cross, change, G));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3AddKnown(s->vesicle[v], G + v * s->size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That the shapes Y have about the areas and volumes that they keep, which a lost shape has not. */
+static PetscErrorCode SpaceCheckShapes(Space s) {
+  PetscReal off = 0;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    const Vesicle3 vesicle = s->vesicle[v];
+    PetscCall(SurfacePlace(vesicle->at, s->work.Y + v * s->size, PETSC_FALSE));
+    off = PetscMax(off, PetscAbsReal(vesicle->at->area / vesicle->area - 1));
+    off = PetscMax(off, PetscAbsReal(vesicle->at->volume / vesicle->volume - 1));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &off, 1, MPIU_REAL, MPI_MAX, s->share.comm));
+  if (off > LOST)
+    PetscCall(
+        PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE, "a vesicle's area or volume is off by %.2g", (double)off));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -255,6 +225,8 @@ static PetscErrorCode SpaceAttempt(Space s, PetscReal dt) {
   }
   if (PetscIsInfOrNanReal(moved))
     PetscCall(PetscStrncpy(s->report.failure, "the shape is not finite", PETVES_MAX_MESSAGE));
+  else
+    PetscCall(SpaceCheckShapes(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -352,6 +324,10 @@ static PetscErrorCode SpaceStepJudged(Space s, PetscReal until) {
     const PetscReal dt = StepSize(policy, &s->plan, s->state.dt_last, PETSC_MAX_REAL, until - t);
     s->report.dt = dt;
     *s->report.failure = 0;
+    if (dt < SMALLEST * policy->base && dt < 0.5 * (until - t)) {
+      PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE, "steps have come down to %.1g", (double)dt));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     PetscCall(SpaceAttempt(s, dt));
     const StepTrial trial = {.solved = (PetscBool) !*s->report.failure,
                              .first = (PetscBool)!s->past,

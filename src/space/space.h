@@ -77,7 +77,7 @@ typedef struct {
   PetscReal film;      /* least distance of vesicles that have been placed; negative where they overlap */
   PetscReal least;     /* film that nodes and rings resolve (TubeLeastFilm, ThroatLeastFilm) */
   PetscReal thrust;    /* of the vesicles in the last solve: pi R^2 times minus their pressure drop */
-  PetscReal *drag;     /* [rows] of the throat (ThroatFlow); NULL: none */
+  PetscReal *flow;     /* [own][size] what the throat adds to the flow of mean velocity 1; NULL: no throat */
   PetscReal drop;      /* of the pressure by the throat alone, at the mean velocity 1 (length/time) */
   PetscReal left;      /* part of the flux in the tube alone that the throat leaves: 1 where the flux is given */
 } SpaceTube;
@@ -153,13 +153,17 @@ PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], cons
    that have been placed at X[own][size]. Nothing is added where the film is thinner than the least. SpaceMeasureFilm -
    the film of X, where the surfaces are placed, the least one and the spacing. SpaceAddTube - V[own][size] += what the
    tube makes of the forces F[own][size] on other vesicles, or of their velocities F in its part of the double layer.
-   SpaceAddThroatFlow - work.background += what a throat makes of the tube's flow. SpaceMeasureThrust - of the
-   membranes' forces, minus work.F, and velocities work.V. Collective. */
+   SpaceMeasureThrust - of the membranes' forces, minus work.F, and velocities work.V. Collective. */
 PETSC_EXTERN PetscErrorCode SpacePlaceTube(Space space, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], PetscReal *film);
 PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, NearKernel kernel, const PetscReal F[], PetscReal V[]);
-PETSC_EXTERN PetscErrorCode SpaceAddThroatFlow(Space space);
 PETSC_EXTERN PetscErrorCode SpaceMeasureThrust(Space space);
+
+/* SpaceGuess - a first guess of x for the formula b: Q that leads to X*, the tension of the last states extrapolated,
+   the last U. SpaceIterate - Y = Xhat + Q/a0 of x; moved: the largest root mean square of its change, over the radius.
+   Collective. */
+PETSC_EXTERN PetscErrorCode SpaceGuess(Space space, const BDF *b);
+PETSC_EXTERN PetscErrorCode SpaceIterate(Space space, PetscReal a0, PetscReal *moved);
 
 /* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as
    the first guess, in one of the Newton steps of a time step, of which the first may make new factors, and set V to the

@@ -28,17 +28,14 @@ PetscErrorCode SpaceMeasureFilm(Space s, const PetscReal X[], PetscReal *film) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodes, the rings and the flow of a throat and its tube. */
+/* The nodes and rings of a throat and its tube, and what the throat takes of the flux and of the pressure. */
 static PetscErrorCode SpacePlaceThroat(Space s, const TubeExtent *extent) {
-  const PetscReal period = s->setting.tube.period;
-  PetscReal square;
+  const PetscReal P = s->setting.tube.period;
   PetscFunctionBeginUser;
   PetscCall(ThroatPlace(s->tube.throat, s->sphere->p, extent));
-  PetscCall(PetscFree(s->tube.drag));
-  PetscCall(PetscMalloc1(TubeRowCount(s->tube.tube), &s->tube.drag));
-  PetscCall(ThroatFlow(s->tube.throat, s->tube.drag, &square));
-  s->tube.left = period > 0 ? 1 - square / (8 * PETSC_PI * s->tube.tube->nu * period) : 1;
-  s->tube.drop = square / (s->tube.left * PETSC_PI * PetscSqr(s->setting.tube.radius));
+  const PetscReal resistance = ThroatResistance(s->tube.throat);
+  s->tube.left = P > 0 ? 1 - resistance / (8 * PETSC_PI * s->tube.tube->nu * P) : 1;
+  s->tube.drop = resistance / (s->tube.left * PETSC_PI * PetscSqr(s->setting.tube.radius));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,7 +56,7 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
     const Vesicle3 vesicle = s->vesicle[v];
     PetscReal *T = s->tube.wall + v * each, *Theta = vesicle->K ? s->tube.traction + v * each : NULL;
     PetscCall(TubeFactor(tube, X + v * s->size, T, Theta));
-    if (s->tube.throat) PetscCall(ThroatFactor(s->tube.throat, X + v * s->size, T));
+    if (s->tube.throat) PetscCall(ThroatFactor(s->tube.throat, X + v * s->size, T, s->tube.flow + v * s->size));
     PetscCall(TubeAddProduct(tube, s->size, T, 1, T, vesicle->S));
     if (Theta) PetscCall(TubeAddProduct(tube, s->size, T, vesicle->setting.ratio - 1, Theta, vesicle->K));
   }
@@ -87,32 +84,6 @@ PetscErrorCode SpaceAddTube(Space s, NearKernel kernel, const PetscReal F[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SpaceAddThroatFlow(Space s) {
-  const PetscInt rows = TubeRowCount(s->tube.tube);
-  PetscReal *flow;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows, &flow));
-  for (PetscInt k = 0; k < rows; k++) flow[k] = s->setting.tube.mean * s->tube.drag[k];
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(
-        TubeAddRows(s->tube.tube, s->size, s->tube.wall + v * s->size * rows, flow, s->work.background + v * s->size));
-  PetscCall(PetscFree(flow));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* F . T^T drag of forces F[size] on a vesicle, what the throat takes from the tube's thrust. */
-static PetscErrorCode SpaceThroatThrust(Space s, PetscInt v, const PetscReal F[], PetscReal *part) {
-  const PetscInt rows = TubeRowCount(s->tube.tube);
-  PetscReal *row;
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(rows, &row));
-  PetscCall(TubeRows(s->tube.tube, s->size, s->tube.wall + v * s->size * rows, 1, F, row));
-  *part = 0;
-  for (PetscInt k = 0; k < rows; k++) *part += s->tube.drag[k] * row[k];
-  PetscCall(PetscFree(row));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SpaceMeasureThrust(Space s) {
   PetscReal sum = 0, part, *on_fluid;
   PetscFunctionBeginUser;
@@ -122,9 +93,7 @@ PetscErrorCode SpaceMeasureThrust(Space s) {
     PetscCall(TubeThrust(s->tube.tube, s->vesicle[v]->at, s->vesicle[v]->setting.ratio, on_fluid,
                          s->work.V + v * s->size, &part));
     sum += part;
-    part = 0;
-    if (s->tube.throat) PetscCall(SpaceThroatThrust(s, v, on_fluid, &part));
-    sum -= part;
+    for (PetscInt k = 0; k < s->size && s->tube.throat; k++) sum += on_fluid[k] * s->tube.flow[v * s->size + k];
   }
   PetscCall(PetscFree(on_fluid));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, s->share.comm));

@@ -4,23 +4,24 @@
 #define ON_MOUTH 40  /* spaces between rings on a mouth at least */
 #define ON_DEPTH 12  /* spaces between rings on the depth R - R_t at least, as lengths */
 #define ON_RADIUS 32 /* and on R_t: wider spaces let fluid through the wall, the more, the longer the throat is */
-#define FAR 8.       /* radii beyond which flows without flux are nothing but rounding */
+#define FAR 8.       /* radii beyond which flows without flux are smaller than rounding errors */
+#define FEET 32      /* points of the wall to either side that its distance is measured from */
 #define NEAREST 0.6  /* of a space: rings nearer to the tube are left out */
-#define MOST_SPACES ((PetscInt)(NEAREST * TUBE_MOST_LENGTHS)) /* those that the tube has nodes for */
+#define MOST_SPACES ((PetscInt)(NEAREST * TUBE_MOST_LENGTHS)) /* that the nodes of the tube resolve */
 
 struct _p_Throat {
   ThroatSetting setting;
   Tube tube;         /* borrowed */
-  PetscInt spaces;   /* that rings were made for */
-  PetscReal highest; /* wave number that they were made for */
-  PetscInt waves;    /* rows of T that they were made for */
-  PetscInt n;
-  PetscReal *X;     /* [2][n]: x, r */
-  PetscReal *arc;   /* [n] length of the wall that a ring stands for */
-  PetscReal *slope; /* [n] dR/dx */
-  PetscReal *T;     /* [2n][waves] S T of the rings */
-  PetscReal *L;     /* [2n][2n] */
-  PetscReal *drag;  /* [2n] */
+  PetscInt spaces;   /* number of equal spaces that the rings are in */
+  PetscReal highest; /* wave number, and rows of T, that L was made for */
+  PetscInt waves;
+  PetscInt n;        /* rings */
+  PetscReal *X;      /* [2][n]: x, r */
+  PetscReal *arc;    /* [n] length of the wall that a ring stands for */
+  PetscReal *slope;  /* [n] dR/dx */
+  PetscReal *T;      /* [2n][waves] S T of the rings */
+  PetscReal *L;      /* [2n][2n] */
+  PetscReal *answer; /* [2n] -L^-1 u_1 */
 };
 
 /* Complete elliptic integrals of the parameter 1 - m1, by the arithmetic and geometric mean. */
@@ -75,7 +76,7 @@ PetscErrorCode ThroatDestroy(Throat *throat) {
   PetscFunctionBeginUser;
   if (!*throat) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3((*throat)->X, (*throat)->arc, (*throat)->slope));
-  PetscCall(PetscFree3((*throat)->T, (*throat)->L, (*throat)->drag));
+  PetscCall(PetscFree3((*throat)->T, (*throat)->L, (*throat)->answer));
   PetscCall(PetscFree(*throat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -93,11 +94,16 @@ static PetscReal ThroatReach(Throat t) {
   return t->setting.mouth + t->setting.length / 2;
 }
 
-/* The distance of a point from the wall, along the wall's normal at the same x. */
+/* The least distance of a point from points of the wall, which are no farther along x than the wall at the same x is
+   across; negative outside. */
 static PetscReal ThroatDistance(Throat t, PetscReal x, PetscReal r) {
-  PetscReal slope;
-  const PetscReal R = ThroatRadius(t, x, &slope);
-  return (R - r) / PetscSqrtReal(1 + slope * slope);
+  const PetscReal across = ThroatRadius(t, x, NULL) - r;
+  PetscReal least = across;
+  for (int k = -FEET; k <= FEET && across > 0; k++) {
+    const PetscReal along = across * k / FEET, R = ThroatRadius(t, x + along, NULL);
+    least = PetscMin(least, PetscSqrtReal(PetscSqr(along) + PetscSqr(R - r)));
+  }
+  return least;
 }
 
 void ThroatMeasure(Throat t, Surface s, TubeExtent *extent) {
@@ -169,15 +175,15 @@ static PetscErrorCode ThroatSolve(Throat t, PetscInt columns, PetscReal x[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* T, L and drag of the rings in the tube. */
+/* T, L and answer of the rings in the tube. */
 static PetscErrorCode ThroatMakeFactor(Throat t) {
   const PetscInt n = t->n, waves = t->tube->waves;
   const PetscReal R = t->tube->setting.radius;
   PetscBLASInt size, info;
   PetscReal *own;
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(t->T, t->L, t->drag));
-  PetscCall(PetscMalloc3(2 * n * waves, &t->T, 4 * n * n, &t->L, 2 * n, &t->drag));
+  PetscCall(PetscFree3(t->T, t->L, t->answer));
+  PetscCall(PetscMalloc3(2 * n * waves, &t->T, 4 * n * n, &t->L, 2 * n, &t->answer));
   PetscCall(PetscMalloc1(2 * n * waves, &own));
   TubeRings(t->tube, n, t->X, NULL, own);
   TubeSignRows(t->tube, 2 * n, own, t->T);
@@ -189,10 +195,10 @@ static PetscErrorCode ThroatMakeFactor(Throat t) {
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &size, t->L, &size, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the mobility of a throat's rings is not positive definite");
   for (PetscInt i = 0; i < n; i++) {
-    t->drag[i] = 2 * (1 - PetscSqr(t->X[n + i] / R));
-    t->drag[n + i] = 0;
+    t->answer[i] = -2 * (1 - PetscSqr(t->X[n + i] / R));
+    t->answer[n + i] = 0;
   }
-  PetscCall(ThroatSolve(t, 1, t->drag, 2 * n));
+  PetscCall(ThroatSolve(t, 1, t->answer, 2 * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,7 +223,7 @@ PetscErrorCode ThroatPlace(Throat t, PetscInt p, const TubeExtent *extent) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ThroatFactor(Throat t, const PetscReal c[], PetscReal T[]) {
+PetscErrorCode ThroatFactor(Throat t, const PetscReal c[], PetscReal T[], PetscReal flow[]) {
   const PetscInt rows = TubeRowCount(t->tube), more = 2 * t->n;
   const SphereTable *table = &t->tube->rings;
   const PetscInt n = table->grid.n, size = table->component[0].columns + table->component[1].columns;
@@ -236,14 +242,13 @@ PetscErrorCode ThroatFactor(Throat t, const PetscReal c[], PetscReal T[]) {
   PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){t->T + first, t->waves - first, more, t->waves},
                                (DenseView){T + first, t->waves - first, size, rows}, 1, own, rows));
   PetscCall(ThroatSolve(t, size, own, rows));
+  PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){own, more, size, rows}, (DenseView){t->answer, more, 1, more}, 0,
+                               flow, size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ThroatFlow(Throat t, PetscReal drag[], PetscReal *square) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(drag, TubeRowCount(t->tube)));
-  PetscCall(PetscArraycpy(drag + t->waves, t->drag, 2 * t->n));
-  *square = 0;
-  for (PetscInt k = 0; k < 2 * t->n; k++) *square += t->drag[k] * t->drag[k];
-  PetscFunctionReturn(PETSC_SUCCESS);
+PetscReal ThroatResistance(Throat t) {
+  PetscReal square = 0;
+  for (PetscInt k = 0; k < 2 * t->n; k++) square += PetscSqr(t->answer[k]);
+  return square;
 }

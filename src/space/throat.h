@@ -11,8 +11,8 @@
 
        -(L^-1 C)^T (L^-1 C)
 
-   to its mobility: L^-1 C are more rows of the vesicle's T. Rings nearer to the tube than a part of their spacing are
-   left out. */
+   to its mobility: L^-1 C are more rows of the vesicle's T. Rings nearer to the tube than 0.6 of their
+   spacing are left out. */
 #pragma once
 #include "space/tube.h"
 
@@ -34,11 +34,9 @@ PETSC_EXTERN void ThroatMeasure(Throat throat, Surface surface, TubeExtent *exte
 PETSC_EXTERN PetscReal ThroatLeastFilm(Throat throat);
 PETSC_EXTERN PetscErrorCode ThroatPlace(Throat throat, PetscInt p, const TubeExtent *extent);
 
-/* ThroatFactor - the throat's rows of T[size][rows], whose other rows TubeFactor has set. Not collective. */
-PETSC_EXTERN PetscErrorCode ThroatFactor(Throat throat, const PetscReal c[], PetscReal T[]);
-
-/* ThroatFlow - drag[rows], L^-1 u_1 in the throat's rows and 0 in the others, u_1 the tube's flow of mean velocity 1:
-   T^T S drag is what the throat adds to that flow. square: the sum of squares, pi R^2 times the pressure drop of the
-   throat at a given flux 1 pi R^2, or, with a given pressure drop, the part 8 pi nu P of the flux that the throat
-   takes. Not collective. */
-PETSC_EXTERN PetscErrorCode ThroatFlow(Throat throat, PetscReal drag[], PetscReal *square);
+/* ThroatFactor - the throat's rows of T[size][rows], whose other rows TubeFactor has set, and flow[size], what the
+   throat adds to the tube's flow u_1 of mean velocity 1. ThroatResistance - |L^-1 u_1|^2: where the flux is given, pi
+   R^2 times the pressure drop of the throat at the mean velocity 1; with a period P, 8 pi nu P times the part of the
+   flux that the throat takes. Not collective. */
+PETSC_EXTERN PetscErrorCode ThroatFactor(Throat throat, const PetscReal c[], PetscReal T[], PetscReal flow[]);
+PETSC_EXTERN PetscReal ThroatResistance(Throat throat);

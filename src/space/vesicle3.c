@@ -41,6 +41,7 @@ PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* S and K, which is not factored. */
 static PetscErrorCode Vesicle3PlaceLayers(Vesicle3 v, const PetscReal Xstar[]) {
   const PetscReal ratio = v->setting.ratio;
   PetscFunctionBeginUser;
