@@ -360,9 +360,9 @@ PetscErrorCode SpaceStep(Space s, PetscReal until) {
   if (*s->report.failure) {
     const size_t used = strlen(s->report.failure);
     PetscCall(PetscSNPrintf(s->report.failure + used, PETVES_MAX_MESSAGE - used,
-                            " in step %" PetscInt_FMT " at time %g; try %s-bending_newton 2", s->state.step + 1,
-                            (double)t,
-                            s->setting.policy.adaptive ? "" : "a smaller -time_step, -time_adapt error or "));
+                            " in step %" PetscInt_FMT " at time %g; try %s%s", s->state.step + 1, (double)t,
+                            s->setting.policy.adaptive ? "" : "a smaller -time_step, -time_adapt error or ",
+                            s->setting.newton > 1 ? "a higher -sphere_degree" : "-bending_newton 2"));
   }
   PetscCall(PhaseEnd());
   PetscCall(PetscTime(&end));
