@@ -12,12 +12,9 @@ ENERGY_COLUMNS = [f"energy_{name}" for name in ENERGIES]
 
 
 def turned_angle(inclination: np.ndarray) -> np.ndarray:
-    """Return how far a vesicle has turned (radians): the column inclination without its jumps by pi.
+    """Return how far a vesicle has turned (radians): the column inclination of series.csv without its jumps by pi.
 
-    Parameters
-    ----------
-    inclination : ndarray
-        The column of series.csv, step after step; between two steps a vesicle may turn by less than pi/2.
+    Between two steps a vesicle may turn by less than pi/2.
     """
     return np.unwrap(2 * np.asarray(inclination)) / 2
 
@@ -40,12 +37,7 @@ def deformation(markers: np.ndarray) -> np.ndarray:
 def half_periods(time: np.ndarray, inclination: np.ndarray) -> np.ndarray:
     """Return the times between passes of a tumbling vesicle's long axis through the vertical; empty for fewer than two.
 
-    Each pass is found by a cubic through the two steps before and the two after it.
-
-    Parameters
-    ----------
-    time, inclination : ndarray
-        The columns of series.csv.
+    Time and inclination are columns of series.csv. Each pass is found by a cubic through two steps before and two after it.
     """
     time, angle = np.asarray(time), turned_angle(inclination)
     half = np.floor(angle / np.pi - 0.5)

@@ -4,13 +4,7 @@ import numpy as np
 
 
 def ellipse_axes(reduced_area: float) -> tuple[float, float]:
-    """Return semi-axes a > b = 1/a of the ellipse of area pi with this reduced area.
-
-    Parameters
-    ----------
-    reduced_area : float
-        V = 4 pi area/perimeter^2, in (0, 1).
-    """
+    """Return semi-axes a > b = 1/a of the ellipse of area pi with the reduced area V = 4 pi area/perimeter^2 in (0, 1)."""
     angle = np.linspace(0, 2 * np.pi, 512, endpoint=False)
     low, high = 1.0, 1e3
     for _ in range(70):
@@ -23,11 +17,6 @@ def ellipse_axes(reduced_area: float) -> tuple[float, float]:
 def keller_skalak_angle(a: float, b: float) -> float:
     """Return the steady inclination (radians) of a tank-treading ellipse in shear, the fluids alike.
 
-    Keller and Skalak, J. Fluid Mech. 120 (1982) 27, in two dimensions. The angle turns at
-
-        d theta/dt = -rate/2 - 2 a b/(a^2 + b^2) omega + rate/2 (a^2 - b^2)/(a^2 + b^2) cos(2 theta)
-
-    where omega, the membrane's own rate, follows from the balance of work and dissipation; with equal viscosities
-    omega = -rate a b/(a^2 - b^2) cos(2 theta). Steady: cos(2 theta) = (a^2 - b^2)/(a^2 + b^2).
+    cos(2 theta) = (a^2 - b^2)/(a^2 + b^2): Keller and Skalak, J. Fluid Mech. 120 (1982) 27, in two dimensions.
     """
     return 0.5 * np.arccos((a * a - b * b) / (a * a + b * b))

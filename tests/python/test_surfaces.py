@@ -1,12 +1,14 @@
 """Runs in three dimensions from Python: what is loaded, drawn and filmed, and what VTK reads."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from harness import SITE, run_petves, run_python
 
 import petves
 from petves.run import SurfaceRun
-from petves.views.surfaces import smooth_surfaces
+from petves.views.surfaces import smooth_surfaces, tube_radius
 from petves.views.words import key_numbers, scene_in_words
 
 SCENE = "-dim 3 -flow_type shear -vesicle_bending 0.1 -sphere_degree 8 -time_step 0.2 -time_end 0.4 -output_every 0.2"
@@ -125,3 +127,14 @@ def test_vtk_reads_every_frame(pair, monkeypatch):
         frame = reader.GetOutputDataObject(0)
         assert frame.GetNumberOfPoints() == 2 * 164 and frame.GetNumberOfCells() == 2 * 324
         assert frame.GetPointData().GetArray("tension") and frame.GetCellData().GetArray("vesicle")
+
+
+def test_wall_of_a_tube_is_drawn():
+    """A throat of radius 0.8 and length 1 in a tube of radius 1.5, whose mouths are as long as the tube is wide."""
+    tube = {"tube_radius": "1.5", "tube_throat": "0.8", "tube_throat_length": "1", "tube_throat_mouth": "0"}
+    run = SimpleNamespace(options=lambda: tube | {"tube_throat_center": "2"})
+    assert np.allclose(tube_radius(run, np.array([2, 2.5, 3.25, 4, -9])), [0.8, 0.8, 1.15, 1.5, 1.5])
+    assert (
+        tube_radius(SimpleNamespace(options=lambda: {"tube_radius": "1.5", "tube_throat": "0"}), np.ones(2)) == 1.5
+    ).all()
+    assert tube_radius(SimpleNamespace(options=dict), np.ones(2)) is None

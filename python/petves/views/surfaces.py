@@ -38,10 +38,22 @@ def smooth_surfaces(run: SurfaceRun, frame: int) -> np.ndarray:
     return np.moveaxis((finer @ saved).reshape(-1, *theta.shape, 4), -1, 1)
 
 
+def tube_radius(run: SurfaceRun, x: np.ndarray) -> np.ndarray | None:
+    """Return the radius of the wall at places x along a circular tube (length), shape of x; None in unbounded fluid."""
+    tube = {name[5:]: float(value) for name, value in run.options().items() if name.startswith("tube_")}
+    if not tube:
+        return None
+    depth = tube["radius"] - tube["throat"] if tube["throat"] else 0
+    out = np.abs(x - tube.get("throat_center", 0)) - tube.get("throat_length", 0) / 2
+    along = np.clip(out / (tube.get("throat_mouth") or tube["radius"]), 0, 1)
+    return tube["radius"] - depth * (1 + np.cos(np.pi * along)) / 2
+
+
 def plot_surfaces(
     run: SurfaceRun, look: Look = PLAIN, frame: int = -1, over: np.ndarray | None = None, figure: Figure | None = None
 ) -> Figure:
-    """Draw the surfaces at a saved time, coloured by tension: one view from the side and three along the axes.
+    """Draw the surfaces at a saved time, coloured by tension: one view from the side and three along the axes, two of them
+    with the wall of a tube.
 
     Colours span the tensions of the saved times `over`, or of that time. A figure that is given is cleared and drawn on.
     """
@@ -50,12 +62,16 @@ def plot_surfaces(
     limits = Normalize(*run.tension_range(frame if over is None else over))
     colours = ScalarMappable(limits, matplotlib.colormaps[look.cmap or "viridis"])
     surfaces = smooth_surfaces(run, frame)
-    extent = np.ptp(np.moveaxis(surfaces, 1, 0).reshape(4, -1)[:3], axis=1)
+    along = np.linspace(surfaces[:, 0].min(), surfaces[:, 0].max(), 200)
+    wall = tube_radius(run, along)
     for k, (name, (elevation, azimuth)) in enumerate({"": (24, -56), **SIDES}.items()):
         axes = figure.add_axes((0.5 * (k % 2), 0.54 - 0.43 * (k // 2), 0.5, 0.43), projection="3d", proj_type="ortho")
         for x, y, z, tension in surfaces:
             shown = dict(rstride=1, cstride=1, linewidth=0.5, facecolors=colours.to_rgba(tension), lightsource=LIGHT)
             axes.plot_surface(x, y, z, **shown)
+        for side in (-1, 1) if wall is not None and k in (1, 2) else ():  # the views along the axes y and z
+            axes.plot(along, *[side * wall * (k == other) for other in (1, 2)], color="0.5", lw=1)
+        extent = np.array([np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())])
         axes.set_box_aspect(extent, zoom=0.95 * np.linalg.norm(extent) / extent.max())
         axes.view_init(elevation, azimuth)
         axes.set_axis_off()
