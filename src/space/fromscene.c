@@ -95,7 +95,7 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                 .symmetry = s->dim == DIM_AXIAL ? SPHERE_REVOLVED : SPHERE_WHOLE,
                                 .order = s->scheme.order,
                                 .newton = s->space.newton,
-                                .rtol = 1e-8,
+                                .rtol = 1e-7,
                                 .flow = SceneFlow3,
                                 .context = &s->flow,
                                 .policy = {.adaptive = (PetscBool)(s->time.adapt == ADAPT_ERROR),

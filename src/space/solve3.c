@@ -1,7 +1,7 @@
 #include "numerics/blas.h"
 #include "space/space.h"
 
-#define RENEWAL 0.4     /* iterations that new factors cost, over the number of harmonics */
+#define RENEWAL 0.1     /* iterations that new factors cost, over the number of harmonics */
 #define STEP_RATIO 1.45 /* of two steps with the same factors */
 
 /* Whether velocities are unknowns. */

@@ -120,6 +120,13 @@ def test_one_rank_or_three(steps, tmp_path):
         assert np.array_equal(one[name], rest[name]), name
 
 
+def test_iterations(tmp_path):
+    """With factors that are kept several vesicles in shear take at most 6 iterations in the mean."""
+    places = "0,0,0,3.4,0.5,0,6.8,0,0,10.2,0.5,0"
+    four = f"{SHEAR} -vesicle_count 4 -vesicle_center {places} -vesicle_bending 0.1 -time_step 0.1 -time_end 2"
+    assert run_petves(tmp_path / "run", four).series["coupled_its"][3:].mean() <= 6
+
+
 def test_repulsion_keeps_a_film(tmp_path):
     """Two vesicles that extension presses together, with and without repulsion, which costs no iterations."""
     pair = f"{SPACE} -sphere_degree 4 -flow_type extension -vesicle_axis 0,1,0 -vesicle_reduced_volume 0.98 -vesicle_count 2"
