@@ -113,8 +113,8 @@ static PetscErrorCode RestartReadAll(const Model *m, H5File *file, Record *recor
   PetscCall(H5CheckLinks(file, &plain));
   PetvesCheck(plain, file->comm,
               "-restart %s: it has links to other names or files; allowed: a checkpoint.h5 of petves", file->path);
+  PetscCall(RestartFiles(m->scene, file)); /* first, as options have defaults that follow from the curves */
   PetscCall(RestartOptions(m->scene, file));
-  PetscCall(RestartFiles(m->scene, file));
   PetscCall(m->ops.checkpoint(m->context, file, PETSC_FALSE, frames));
   PetscCall(H5GetText(file, "series_row", &text));
   RecordParse(record, text);
