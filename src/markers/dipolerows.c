@@ -61,7 +61,7 @@ static void DipoleRowSum(DipoleRows d, PetscInt j) {
 PetscErrorCode DipoleRowsSet(DipoleRows d, StencilRows list, const PetscReal T[], PetscBool own,
                              const PetscReal profile[], const PetscReal mean[2]) {
   const Grid g = d->grid;
-  PetscReal v = 0, sum = 0;
+  PetscReal net = 0, v = 0, sum = 0;
   PetscInt j, window[2];
   PetscFunctionBeginUser;
   d->own = own;
@@ -78,8 +78,9 @@ PetscErrorCode DipoleRowsSet(DipoleRows d, StencilRows list, const PetscReal T[]
       StencilRowSpread(list, (Field)f, j, 1, T, row);
     }
   for (j = d->window[0]; j < d->window[1]; j++) DipoleRowSum(d, j);
+  for (j = 0; j < g->n[1]; j++) net += d->mean[j] / (PetscReal)g->n[1];
   for (j = 0; j < g->n[1]; j++) { /* b along y, zero at a wall or else with zero mean */
-    v -= g->h * d->mean[j];
+    v -= g->h * (d->mean[j] - net);
     d->mean[j] = v;
     sum += v;
   }

@@ -4,7 +4,9 @@
    A velocity b whose divergence is the dipoles' source is found row by row: along x by sums of the source less the mean
    of its row, which are zero on walls, along y by sums of these means,
 
-       b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = -h mean_j,      source = G^T of the velocity.
+       b_i - b_{i-1} = h (mean - source_i),      v_j - v_{j-1} = h (net - mean_j),      source = G^T of the velocity,
+
+   net the mean of all rows: what sources do not add up to is taken off evenly in the whole box.
 
    Then u = w + b, where w is the flow of the forces + nu L_u b, and the mean flow of v adds to the pressure only
    (docs/fluid.md, Stream function). Every rank has the means of all rows; nothing crosses ranks.
@@ -28,7 +30,7 @@ struct _p_DipoleRows {
 PETSC_EXTERN PetscErrorCode DipoleRowsCreate(Grid grid, PetscReal nu, DipoleRows *rows);
 PETSC_EXTERN PetscErrorCode DipoleRowsDestroy(DipoleRows *rows);
 
-/* DipoleRowsSet - the dipoles of the list with tensors T[3M], whose sources add up to zero. own: with their own forces;
+/* DipoleRowsSet - the dipoles of the list with tensors T[3M]. own: with their own forces;
    else their sources alone. The mean flow of u is mean[0] profile[rows of all ranks] or, where profile is NULL and the
    box is periodic both ways, that of u and v is mean[2]. Not collective. */
 PETSC_EXTERN PetscErrorCode DipoleRowsSet(DipoleRows rows, StencilRows list, const PetscReal T[], PetscBool own,

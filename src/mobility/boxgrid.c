@@ -10,12 +10,12 @@ typedef struct {
   Markers markers;
   LayerSetting set;
   LayerPairs pairs; /* pairs of places */
-  Vec force, u, p;  /* on the grid; NULL for forces, whose rows are not kept */
   Vec F, U;         /* at the places */
   const BoxAxis *axis;
   const BoxLattice *lattice;
-  PaddedStencil *dipole; /* [DIPOLE_COUNT places] stencils of dipoles; NULL for forces */
-  Vec source;            /* divergence that dipoles bring, on the grid; NULL for forces */
+  PaddedStencil *dipole; /* [DIPOLE_COUNT places] stencils of dipoles; NULL for forces, as the next two */
+  StencilRows spots;     /* of one dipole on the grid */
+  DipoleRows rows;       /* this dipole in the rows of a solve */
 } BoxGrid;
 
 static PetscErrorCode BoxGridPlace(BoxGrid *b, const char kernel[]) {
@@ -58,17 +58,17 @@ static PetscErrorCode BoxGridCreate(const FluidSpec *spec, const char kernel[], 
                              dipole ? NULL : lattice->half, &(PairSources){.stencil = b->dipole}, NULL, &b->pairs));
   PetscCall(LayerPairsPlace(b->pairs));
   if (!dipole) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DMCreateGlobalVector(b->fluid->grid->velocity, &b->force));
-  PetscCall(VecDuplicate(b->force, &b->u));
-  PetscCall(DMCreateGlobalVector(b->fluid->grid->da[FIELD_P], &b->p));
-  PetscCall(VecDuplicate(b->p, &b->source));
+  PetscCall(DipoleListCreate(b->fluid->grid, &b->spots));
+  PetscCall(DipoleRowsCreate(b->fluid->grid, spec->nu, &b->rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode BoxGridDestroy(BoxGrid *b) {
-  Vec *all[] = {&b->force, &b->u, &b->p, &b->F, &b->U, &b->source};
   PetscFunctionBeginUser;
-  for (int k = 0; k < 6; k++) PetscCall(VecDestroy(all[k]));
+  PetscCall(VecDestroy(&b->F));
+  PetscCall(VecDestroy(&b->U));
+  PetscCall(DipoleRowsDestroy(&b->rows));
+  PetscCall(StencilRowsDestroy(&b->spots));
   PetscCall(PetscFree(b->dipole));
   PetscCall(LayerPairsDestroy(&b->pairs));
   PetscCall(MarkersDestroy(&b->markers));
@@ -122,42 +122,24 @@ static void AddEntry(const BoxGrid *b, int ci, int cj, const PetscInt a[2], cons
     }
 }
 
-/* Unit part cj of a dipole at place j, on the grid. */
-static PetscErrorCode SpreadDipole(BoxGrid *b, PetscInt j, int cj) {
-  const Grid g = b->fluid->grid;
-  PetscReal unit[DIPOLE_COUNT] = {0};
-  Stencil spot[DIPOLE_SPOTS];
-  StencilRows list;
-  PetscScalar sum;
-  PetscFunctionBeginUser;
-  unit[cj] = 1;
-  DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
-  PetscCall(VecSet(b->force, 0));
-  PetscCall(VecSet(b->source, 0));
-  PetscCall(DipoleListCreate(g, &list));
-  PetscCall(StencilRowsPlace(list, 1, spot));
-  PetscCall(DipoleListSpread(list, unit, b->force, b->source));
-  PetscCall(StencilRowsDestroy(&list));
-  PetscCall(VecSum(b->source, &sum));
-  PetscCall(VecShift(b->source, -sum / ((PetscReal)g->n[0] * g->n[1])));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* U = the velocity at all places by a unit source, part cj, at place j. */
 static PetscErrorCode BoxGridRespond(BoxGrid *b, PetscInt j, int cj) {
-  const PetscReal over = 1 / PetscSqr(b->fluid->grid->h);
+  const Grid g = b->fluid->grid;
+  const PetscReal no_flow[2] = {0, 0};
+  PetscReal unit[DIPOLE_COUNT] = {0};
+  Stencil spot[DIPOLE_SPOTS];
   PetscFunctionBeginUser;
-  if (b->lattice->dipole) {
-    PetscCall(SpreadDipole(b, j, cj));
-    PetscCall(StokesSolve(b->stokes, b->force, b->source, b->u, b->p));
-    PetscCall(MarkersInterpolate(b->markers, b->u, b->U));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  unit[cj] = 1;
   PetscCall(VecSet(b->F, 0));
-  PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
+  if (b->rows) {
+    DipoleSpots(g, b->fluid->nu, b->markers->X + 2 * j, spot);
+    PetscCall(StencilRowsPlace(b->spots, 1, spot));
+    PetscCall(DipoleRowsSet(b->rows, b->spots, unit, PETSC_TRUE, NULL, no_flow));
+  } else
+    PetscCall(VecSetValue(b->F, 2 * j + cj, 1, INSERT_VALUES));
   PetscCall(VecAssemblyBegin(b->F));
   PetscCall(VecAssemblyEnd(b->F));
-  PetscCall(MarkersRespond(b->markers, StokesStream(b->stokes), NULL, over, b->F, b->U));
+  PetscCall(MarkersRespond(b->markers, StokesStream(b->stokes), b->rows, 1 / PetscSqr(g->h), b->F, b->U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
