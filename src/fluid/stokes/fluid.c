@@ -66,26 +66,8 @@ static void WallMomentum(const FluidSpec *spec, Fluid f, int c, PetscScalar bc1[
     }
 }
 
-/* bc2 = minus the wall faces' part of the divergence. */
-static void WallDivergence(const FluidSpec *spec, Grid g, PetscScalar bc2[]) {
-  PetscReal X[2], u[2];
-  const PetscInt n = g->columns[FIELD_P];
-  for (PetscInt j = 0; j < g->rows[FIELD_P]; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscInt index[2] = {i, j + g->first};
-      PetscScalar value = 0;
-      for (int dir = 0; dir < 2; dir++)
-        for (int side = 0; side < 2; side++) {
-          if (!g->wall[dir] || index[dir] != (side ? g->n[dir] - 1 : 0)) continue;
-          GridPosition(g, FIELD_P, index[0], index[1], X);
-          X[dir] = side ? g->hi[dir] : g->lo[dir];
-          FlowVelocity(spec->flow, 0, X[0], X[1], u);
-          value -= (side ? u[dir] : -u[dir]) / g->h;
-        }
-      bc2[j * n + i] = value;
-    }
-}
-
+/* The divergence of u_inf is zero on the grid too: that of the faces off the walls is minus the wall faces' part, bc2.
+ */
 static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
   PetscScalar *a, *b;
   PetscFunctionBeginUser;
@@ -100,9 +82,7 @@ static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
   }
   PetscCall(VecRestoreArray(f->background, &b));
   PetscCall(VecRestoreArray(f->bc1, &a));
-  PetscCall(VecGetArray(f->bc2, &a));
-  WallDivergence(spec, f->grid, a);
-  PetscCall(VecRestoreArray(f->bc2, &a));
+  PetscCall(GridGradientTranspose(f->grid, -1, f->background, f->bc2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
