@@ -61,7 +61,7 @@ PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
    flow outside a moving rigid body. Nothing in unbounded fluid.
 
    DoubleLayerRows - the same dipoles as rows of a solve by stream function, with their mean velocity, and unless their
-   force is spread already their own; profile: that of the Stokes solve (StokesProfile).
+   force is spread already their own; profile: that of the Stokes solve (StreamProfile).
 
    DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of J less its flux: what the dipoles add to
    the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel along x

@@ -107,7 +107,7 @@ static PetscErrorCode MobilitySetDipoles(Mobility m, Vec G, PetscBool own) {
   PetscFunctionBeginUser;
   if (!m->contrast) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(G, &a));
-  PetscCall(DoubleLayerRows(m->contrast, a, own, StokesProfile(m->stokes), m->dipoles));
+  PetscCall(DoubleLayerRows(m->contrast, a, own, StreamProfile(m->stream), m->dipoles));
   PetscCall(VecRestoreArrayRead(G, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -218,10 +218,11 @@ PetscErrorCode MobilityAdd(Mobility m, Vec F, Vec G, Vec U) {
    have. */
 static PetscErrorCode AddMean(Mobility m, const PetscReal mean[2], Vec u) {
   const Grid g = m->fluid->grid;
-  const PetscReal *profile = StokesProfile(m->stokes);
   PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!m->contrast || g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!m->contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal *profile = StreamProfile(m->stream);
+  if (g->wall[0] || (g->wall[1] && !profile)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(u, &a));
   for (int f = FIELD_U; f <= (g->wall[1] ? FIELD_U : FIELD_V); f++)
     for (PetscInt j = 0; j < g->rows[f]; j++)

@@ -2,13 +2,8 @@
 
 struct _p_Stokes {
   Fluid fluid;
-  ZeroFlux flux; /* NULL unless the fluid may carry no flux along x */
   Stream stream; /* NULL unless both fast solves are fftw_tridiagonal's */
 };
-
-const PetscReal *StokesProfile(Stokes s) {
-  return s->flux ? ZeroFluxProfile(s->flux) : NULL;
-}
 
 Stream StokesStream(Stokes s) {
   return s->stream;
@@ -20,8 +15,7 @@ PetscErrorCode StokesCreate(Fluid fluid, Stokes *out) {
   PetscCall(PetscNew(&s));
   *out = s;
   s->fluid = fluid;
-  if (fluid->zero_flux && !fluid->grid->wall[0] && fluid->grid->wall[1]) PetscCall(ZeroFluxCreate(fluid, &s->flux));
-  if (fluid->tridiagonal) PetscCall(StreamCreate(fluid, s->flux, &s->stream));
+  if (fluid->tridiagonal) PetscCall(StreamCreate(fluid, &s->stream));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,7 +23,6 @@ PetscErrorCode StokesDestroy(Stokes *stokes) {
   PetscFunctionBeginUser;
   if (!*stokes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StreamDestroy(&(*stokes)->stream));
-  PetscCall(ZeroFluxDestroy(&(*stokes)->flux));
   PetscCall(PetscFree(*stokes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

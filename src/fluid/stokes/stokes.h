@@ -26,10 +26,6 @@ PETSC_EXTERN PetscErrorCode StokesProject(Stokes stokes, Vec r_u, Vec r_p, Vec u
    r_u is given but for a part without divergence: one scalar solve, of L p = -G^T (r_u + nu L_u u). Collective. */
 PETSC_EXTERN PetscErrorCode StokesPressure(Stokes stokes, Vec r_u, Vec u, Vec p);
 
-/* StokesProfile - of u along the channel, [rows of all], with a mean of 1: what the solve leaves out where the fluid
-   may carry no flux; borrowed, NULL elsewhere. Not collective. */
-PETSC_EXTERN const PetscReal *StokesProfile(Stokes stokes);
-
 /* StokesStream - the solve for the velocity alone, much cheaper, the same to rounding; borrowed. NULL unless the fast
    solves are fftw_tridiagonal's. Not collective. */
 PETSC_EXTERN Stream StokesStream(Stokes stokes);

@@ -7,7 +7,7 @@
 #include "fluid/stokes/stream.h"
 #include "fluid/stokes/streamloops.h"
 
-PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
+PetscErrorCode StreamCreate(Fluid f, Stream *out) {
   const Grid g = f->grid;
   const size_t n = (size_t)g->n[0];
   Stream s;
@@ -15,10 +15,10 @@ PetscErrorCode StreamCreate(Fluid f, ZeroFlux flux, Stream *out) {
   PetscCall(PetscNew(&s));
   *out = s;
   s->fluid = f;
-  s->flux = flux;
   PetscCall(RowTransformCreate(g, g->wall[0] ? FIELD_U : FIELD_P, &s->t));
   PetscCall(RowTransformSort(s->t)); /* slow decays come first */
-  s->alpha = -1;
+  s->alpha = s->profile_alpha = -1;
+  if (f->zero_flux && !g->wall[0] && g->wall[1]) PetscCall(PetscMalloc1(2 * g->n[1], &s->profile));
   PetscCall(
       ModeFactorsCreate(g, FIELD_V, s->t->width, s->t->lambda, s->t->scale, &s->factors)); /* nodes are level with v */
   PetscCall(SlabsCreate(s->factors, &s->slabs));
@@ -45,6 +45,7 @@ PetscErrorCode StreamDestroy(Stream *stream) {
   for (int k = 0; k < 3; k++) fftw_free(s->row[k]);
   fftw_free(s->curl);
   fftw_free(s->zero);
+  PetscCall(PetscFree(s->profile));
   PetscCall(PetscFree2(s->means, s->last));
   PetscCall(StreamFlowsDestroy(&s->flows));
   PetscCall(StreamMeterDestroy(&s->meter));
@@ -82,18 +83,38 @@ static PetscErrorCode StreamSetUp(Stream s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mode 0: the row means of u, and v's, which is the same everywhere, from the sum of its force. */
+/* (alpha - nu d_yy) b = 1 with b reflected in the walls to minus itself, by elimination. */
+const PetscReal *StreamProfile(Stream s) {
+  const PetscInt n = s->fluid->grid->n[1];
+  const PetscReal alpha = s->fluid->alpha, off = -s->fluid->nu / PetscSqr(s->fluid->grid->h);
+  PetscReal *b = s->profile, *c = b + n, mean = 0;
+  if (!b || s->profile_alpha == alpha) return b;
+  s->profile_alpha = alpha;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal diagonal = alpha - off * (j == 0 || j == n - 1 ? 3 : 2);
+    const PetscReal pivot = diagonal - (j ? off * c[j - 1] : 0);
+    c[j] = off / pivot;
+    b[j] = (1 - (j ? off * b[j - 1] : 0)) / pivot;
+  }
+  for (PetscInt j = n - 2; j >= 0; j--) b[j] -= c[j] * b[j + 1];
+  for (PetscInt j = 0; j < n; j++) mean += b[j] / n;
+  for (PetscInt j = 0; j < n; j++) b[j] /= mean;
+  return b;
+}
+
+/* Mode 0: the row means of u, and v's, which is the same everywhere, from the sum of its force. Where the mean flow is
+   held at zero its mean is taken off u, evenly or, in a channel, as the profile has it. */
 static PetscErrorCode MeanFlow(Stream s, PetscReal sum) {
   const Grid g = s->fluid->grid;
+  const PetscReal *profile = StreamProfile(s);
   PetscReal mean = 0;
   PetscFunctionBeginUser;
   PetscCall(TridiagonalEnd(s->mean));
   for (PetscInt j = g->rows[FIELD_U] - 1; j >= 0; j--) TridiagonalDown(s->mean, j, &s->means[j]);
-  if (s->flux) PetscCall(ZeroFluxCorrectMeans(s->flux, s->means));
-  if (s->fluid->held) { /* both means to zero */
+  if (profile || s->fluid->held) {
     for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) mean += s->means[j] / g->n[1];
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPIU_REAL, MPI_SUM, g->comm));
-    for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) s->means[j] -= mean;
+    for (PetscInt j = 0; j < g->rows[FIELD_U]; j++) s->means[j] -= mean * (profile ? profile[g->first + j] : 1);
     sum = 0;
   }
   s->mean_v = s->fluid->alpha > 0 ? sum / ((PetscReal)g->n[0] * g->n[1] * s->fluid->alpha) : 0;

@@ -7,14 +7,21 @@
        (alpha - nu (d_xx + d_yy)) (-(d_xx + d_yy)) chi = d_x r_v - d_y r_u,
    with chi = 0 and d_y chi = 0 on walls. One Fourier transform along x there and one back, a fourth-order recurrence in
    y between them. The mean flow, mode 0, is a tridiagonal problem by itself. Between walls in x, modes are sines, there
-   is no mean flow, and what holds the fluid at the walls is a force (sidewalls.h). */
+   is no mean flow, and what holds the fluid at the walls is a force (sidewalls.h).
+
+   In a channel that may carry no flux a uniform pressure gradient along it holds the mean flow at zero: u loses as much
+   of the discrete Poiseuille profile as makes its sum zero. */
 #pragma once
 #include "fluid/stokes/streamstate.h"
 
-/* StreamCreate - for a fluid in a box that is periodic in x, or has walls both ways, whose alpha it follows; flux:
-   borrowed, NULL unless the fluid may carry no flux along x. Not collective. */
-PETSC_EXTERN PetscErrorCode StreamCreate(Fluid fluid, ZeroFlux flux, Stream *stream);
+/* StreamCreate - for a fluid in a box that is periodic in x, or has walls both ways, whose alpha it follows. Not
+   collective. */
+PETSC_EXTERN PetscErrorCode StreamCreate(Fluid fluid, Stream *stream);
 PETSC_EXTERN PetscErrorCode StreamDestroy(Stream *stream);
+
+/* StreamProfile - the Poiseuille profile over its mean, [rows of all], where a channel may carry no flux; borrowed,
+   NULL elsewhere. Not collective. */
+PETSC_EXTERN const PetscReal *StreamProfile(Stream stream);
 
 /* StreamSolve - velocity for these forces, zero mean in quasi-steady flow in a box that is periodic both ways. Counted
    as one scalar solve, whose transforms it has. Modes are followed from forces to where 2e-22 of them are left.

@@ -1,7 +1,7 @@
 /* The parts of a solve by stream function (stream.h) and the rows of forces and velocities that it is given: what its
    way up (sweepup.c) and its way down (sweepdown.c) share. Each rank has the rows of its slab. */
 #pragma once
-#include "fluid/stokes/flux.h"
+#include "fluid/stokes/fluid.h"
 #include "fluid/stokes/sidewalls.h"
 #include "fluid/stokes/streamflow.h"
 #include "fluid/stokes/streammeter.h"
@@ -30,7 +30,6 @@ typedef struct {
 
 struct _p_Stream {
   Fluid fluid;
-  ZeroFlux flux;            /* borrowed, or NULL */
   RowTransform t;           /* along the nodes of a row */
   PetscReal alpha;          /* coefficient that `factors` are for; -1: none yet */
   ModeFactors factors;      /* constants of the recurrences */
@@ -43,6 +42,8 @@ struct _p_Stream {
   Tridiagonal mean;         /* the solve for the row means of u, one mode; NULL between walls in x, without means */
   PetscReal one[2];         /* eigenvalue and scale of that mode */
   PetscReal *means, mean_v; /* [rows of u] mode 0 of u, and of v */
+  PetscReal *profile;       /* StreamProfile, then work; NULL unless a channel may carry no flux */
+  PetscReal profile_alpha;  /* coefficient that the profile is for; -1: none yet */
   StreamMeter meter;
   StreamFlows flows;
   PetscScalar *flow; /* the flow that the solve under way makes; NULL: none */
