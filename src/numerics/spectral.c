@@ -2,18 +2,16 @@
 #include "numerics/circulant.h"
 #include <fftw3.h>
 
-#define TURNS 3 /* angles that a step shifts by: those of the states before it */
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
   PetscReal *modes;  /* [2n] work: modes */
   PetscReal *factor; /* [2][2][2n] of the modes, for the slopes of both powers at the points and halfway, over n */
-  PetscReal *derivative[3];           /* weights [n] of powers 1, 2, 4 */
-  PetscReal *turn[TURNS], phi[TURNS]; /* weights [n] of shifts by the angles phi */
-  PetscReal *round;                   /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
-  PetscReal *twice, *sum;             /* work arrays of the sums */
-  int next;                           /* number of the shift that is replaced next */
+  PetscReal *derivative[3]; /* weights [n] of powers 1, 2, 4 */
+  PetscReal *turn;          /* work: weights [n] of a shift */
+  PetscReal *round;         /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
+  PetscReal *twice, *sum;   /* work arrays of the sums */
 };
 
 /* Set the weights of the derivatives, which are those of the trigonometric cardinal function,
@@ -69,10 +67,7 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
   }
-  for (int t = 0; t < TURNS; t++) {
-    PetscCall(PetscMalloc1(n, &s->turn[t]));
-    s->phi[t] = NAN;
-  }
+  PetscCall(PetscMalloc1(n, &s->turn));
   for (int p = 0; p < 3; p++) PetscCall(PetscMalloc1(n, &s->derivative[p]));
   SpectralSetWeights(s);
   SpectralSetFactors(s);
@@ -88,7 +83,7 @@ PetscErrorCode SpectralDestroy(Spectral *spectral) {
   fftw_free(s->hat);
   fftw_free(s->line);
   for (int p = 0; p < 3; p++) PetscCall(PetscFree(s->derivative[p]));
-  for (int t = 0; t < TURNS; t++) PetscCall(PetscFree(s->turn[t]));
+  PetscCall(PetscFree(s->turn));
   PetscCall(PetscFree5(s->twice, s->sum, s->round, s->modes, s->factor));
   PetscCall(PetscFree(*spectral));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -192,11 +187,7 @@ static const PetscReal *SpectralShiftWeights(Spectral s, PetscReal phi) {
   const PetscInt n = s->n, m = PetscAbsReal(labels) < 1e9 ? (PetscInt)labels : 0;
   const PetscReal half = 0.5 * phi - PETSC_PI * m / n, top = PetscSinReal(n * half) / n;
   const PetscReal sine = PetscSinReal(half), cosine = PetscCosReal(half);
-  PetscReal *weight = s->turn[s->next];
-  for (int t = 0; t < TURNS; t++)
-    if (s->phi[t] == phi) return s->turn[t];
-  s->phi[s->next] = phi;
-  s->next = (s->next + 1) % TURNS;
+  PetscReal *weight = s->turn;
   PetscInt q = ((((1 - n) / 2 - m) % n) + n) % n;
   for (PetscInt j = (1 - n) / 2; j <= n / 2; j++, q = q + 1 < n ? q + 1 : 0) {
     const PetscReal a = s->round[2 * PetscAbsInt(j)], b = j < 0 ? -s->round[2 * -j + 1] : s->round[2 * j + 1];

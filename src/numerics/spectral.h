@@ -1,8 +1,8 @@
 /* Derivatives along a closed curve, and shifts along it, by sums with circulant matrices (circulant.h).
 
    A curve of n markers X_k is the trigonometric polynomial through the markers, with k = n t/(2 pi) as its variable. In
-   mode m the derivative d/dk multiplies by 2 pi i m/n and the shift by an angle phi by e^{i m phi}. The
-   weights of the last shifts are kept, as a step asks for them several times. All functions work on one rank. */
+   mode m the derivative d/dk multiplies by 2 pi i m/n and the shift by an angle phi by e^{i m phi}. All functions work
+   on one rank. */
 #pragma once
 #include "base/base.h"
 
