@@ -12,21 +12,16 @@ static void ChunkPlace(LayerPairs f, const PairChunk *c, PetscReal own[2]) {
 static void ChunkDistances(LayerPairs f, PairChunk *c) {
   const PetscReal *X = f->set->markers->X + 2 * c->j, sign = c->back ? -1 : 1;
   PetscReal own[2];
-  PetscInt k = 0;
   ChunkPlace(f, c, own);
-  for (; k + LANES <= c->n; k += LANES) {
+  for (PetscInt k = 0; k < c->n; k += LANES) { /* whole vectors */
     Lanes x, y;
     LanesPairs(X + 2 * k, &x, &y);
     *(Lanes *)(c->d[0] + k) = sign * (own[0] - x);
     *(Lanes *)(c->d[1] + k) = sign * (own[1] - y);
     *(Lanes *)(c->part + k) = 1 - (Lanes){0};
   }
-  for (; k < c->n; k++) {
-    for (int dir = 0; dir < 2; dir++) c->d[dir][k] = sign * (own[dir] - X[2 * k + dir]);
-    c->part[k] = 1;
-  }
   if (f->set->box && !c->exact) BoxImageRow(f->set->box, c->n, (PetscReal *[2]){c->d[0], c->d[1]}, c->part);
-  for (k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = c->part[k] = 1;
+  for (PetscInt k = c->n; k < CHUNK && k < c->n + LANES; k++) c->d[0][k] = c->d[1][k] = c->part[k] = 1;
   if (c->half && c->i == c->j) c->part[0] = 0.5; /* whole, as K of the marker itself, which has the same logarithm */
 }
 

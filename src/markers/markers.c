@@ -217,7 +217,7 @@ PetscErrorCode MarkersCreate(Grid g, Layout l, const char kernel[], PetscBool fo
   m->points = points;
   m->point = point;
   const PetscInt n = 2 * MarkersCount(m);
-  PetscCall(PetscCalloc4(n, &m->X, n, &m->plain, n, &m->force, n, &m->part));
+  PetscCall(PetscCalloc4(n + 2 * LANES, &m->X, n, &m->plain, n, &m->force, n, &m->part));
   m->folded = m->scaled = folded && (g->wall[0] || g->wall[1]);
   m->least =
       folded ? KERNEL_FOLDED_CELLS

@@ -23,7 +23,7 @@ struct _p_Markers {
   const Kernel *kernel;
   PetscInt points;        /* P, points that bear no forces */
   const PetscReal *point; /* [2P] where they are when markers are placed; borrowed */
-  PetscReal *X;           /* [2M + 2P] positions of all markers and points */
+  PetscReal *X;           /* [2M + 2P] positions of all markers and points, in whole vectors (LANES) */
   PetscBool folded;       /* stencils are folded at walls (wallfold.h) */
   PetscBool scaled;       /* stencils are scaled near walls (WallScale) */
   PetscReal least;        /* cells that markers keep from walls */
