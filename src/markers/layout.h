@@ -51,15 +51,9 @@ typedef struct {
 
 /* LayoutBody - the body that a marker belongs to. Not collective. */
 static inline PetscInt LayoutBody(Layout layout, PetscInt marker) {
-  PetscInt low = 0, high = layout->bodies; /* start[low] <= marker < start[high] */
-  while (high - low > 1) {
-    const PetscInt middle = (low + high) / 2;
-    if (layout->start[middle] <= marker)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
+  PetscInt place;
+  (void)PetscFindInt(marker, layout->bodies, layout->start, &place);
+  return place < 0 ? -place - 2 : place; /* negative: minus 1 plus the number of first markers that are not larger */
 }
 
 /* LayoutGather - own[each n] of every rank to all[each M] of every rank. LayoutGatherVec - a marker or edge vector to
