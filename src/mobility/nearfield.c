@@ -136,8 +136,8 @@ static PetscInt FirstBlock(NearField f, PetscInt marker) {
   return low;
 }
 
-PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, const MarkerRange *rows,
-                                   const MarkerRange *columns, PetscReal out[]) {
+PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, const MarkerRange *rows,
+                            const MarkerRange *columns, PetscReal out[]) {
   const Layout l = f->set.bodies->layout;
   const PetscInt from = PetscMin(rows->first, columns->first);
   const PetscInt to = PetscMax(rows->first + rows->n, columns->first + columns->n);
@@ -157,12 +157,5 @@ PetscErrorCode NearFieldAddBetween(NearField f, PetscReal scale, PetscBool box, 
     PetscCall(PetscFree(store.value));
   }
   if (f->box && box) PetscCall(BoxPartAdd(f->box, scale, rows, columns, out));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode NearFieldAdd(NearField f, PetscReal scale, PetscBool box, PetscInt first, PetscInt n, PetscReal out[]) {
-  const MarkerRange range = {first, n};
-  PetscFunctionBeginUser;
-  PetscCall(NearFieldAddBetween(f, scale, box, &range, &range, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

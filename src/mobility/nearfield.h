@@ -50,12 +50,8 @@ PETSC_EXTERN PetscErrorCode NearFieldCreateBoxPart(NearField near, const FluidSp
    is a force times ds (length^3/time^2 with density 1). Collective. */
 PETSC_EXTERN PetscErrorCode NearFieldApply(NearField near, PetscReal alpha, const PetscScalar F[], PetscScalar U[]);
 
-/* NearFieldAdd - out += scale (C + D), or scale C where the box part is not asked for, between the markers first ..
-   first + n - 1, out[2n][2n] entries interlaced, the rows of own markers only. Not collective. */
-PETSC_EXTERN PetscErrorCode NearFieldAdd(NearField near, PetscReal scale, PetscBool box, PetscInt first, PetscInt n,
-                                         PetscReal out[]);
-
-/* NearFieldAddBetween - NearFieldAdd of the velocity of the markers in rows by forces on those in columns, out[2 n of
-   columns][2 n of rows], each a range of whole bodies. Not collective. */
-PETSC_EXTERN PetscErrorCode NearFieldAddBetween(NearField near, PetscReal scale, PetscBool box, const MarkerRange *rows,
-                                                const MarkerRange *columns, PetscReal out[]);
+/* NearFieldAdd - out += scale (C + D), or scale C where the box part is not asked for, of the velocity of the markers
+   in rows by forces on those in columns, out[2 n of columns][2 n of rows] with entries interlaced, the rows of own
+   markers only; each a range of whole bodies. Not collective. */
+PETSC_EXTERN PetscErrorCode NearFieldAdd(NearField near, PetscReal scale, PetscBool box, const MarkerRange *rows,
+                                         const MarkerRange *columns, PetscReal out[]);

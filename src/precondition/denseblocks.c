@@ -138,7 +138,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
       PetscCall(MeanMobilityAssemble(mobility, &own, &own, 0, 1, Mob));
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->mobility->near)
-        PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, law->first, law->n, Mob));
+        PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, &own, &own, Mob));
       PetscCall(AssembleMotion(b, a0, law->first, law->n, &motion));
     }
     for (PetscInt v = law->vesicle; v < law->end; v++) {

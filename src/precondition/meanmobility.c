@@ -140,7 +140,7 @@ PetscErrorCode MeanMobilityOnRoot(MeanMobility m, const MarkerRange *rows, const
   PetscFunctionBeginUser;
   PetscCall(MeanMobilityAssemble(m, rows, columns, l->rank, l->size, Mob));
   if (c->mobility->near)
-    PetscCall(NearFieldAddBetween(c->mobility->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
+    PetscCall(NearFieldAdd(c->mobility->near, PetscSqr(c->fluid->grid->h), box, rows, columns, Mob));
   PetscCall(PetscMPIIntCast(4 * rows->n * columns->n, &size));
   if (l->size > 1)
     PetscCallMPI(MPI_Reduce(l->rank == root ? MPI_IN_PLACE : Mob, Mob, size, MPIU_REAL, MPI_SUM, root, l->comm));

@@ -53,7 +53,8 @@ static void CheckClosedForm(const OffsetTable *t, const char kernel[], PetscBool
   const PetscReal h = w.fluid->grid->h, *X = w.coupling->markers->X;
   const PetscReal reach = f->pairs->kernel->reach[within ? NEAR_ONE : NEAR_TWO];
   PetscReal *all = TestReals(4 * l->M * l->M);
-  TestCall(NearFieldAdd(f, 1, PETSC_TRUE, 0, l->M, all));
+  const MarkerRange every = {0, l->M};
+  TestCall(NearFieldAdd(f, 1, PETSC_TRUE, &every, &every, all));
   for (PetscInt i = l->first; i < l->first + l->n; i++)
     for (PetscInt j = 0; j < l->M; j++) {
       const PetscReal d[2] = {X[2 * i] - X[2 * j], X[2 * i + 1] - X[2 * j + 1]}, r = PetscHypotReal(d[0], d[1]) / h;

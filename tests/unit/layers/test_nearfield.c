@@ -204,7 +204,8 @@ static void CheckReach(void) {
                             "-vesicle_center 0.2,1,2.1,1.4,4.6,1,4.2,3,9.8,4.4,9.2,2.2,12.9,3.8,17,1,19.3,1.9");
   const Layout l = w.layout;
   PetscReal *C = TestReals(4 * l->M * l->M);
-  TestCall(NearFieldAdd(w.coupling->mobility->near, 1, PETSC_TRUE, 0, l->M, C));
+  const MarkerRange every = {0, l->M};
+  TestCall(NearFieldAdd(w.coupling->mobility->near, 1, PETSC_TRUE, &every, &every, C));
   for (PetscInt v = l->own; v < l->end; v++)
     for (PetscInt u = 0; u < l->bodies; u++) {
       PetscInt pairs = 0;
