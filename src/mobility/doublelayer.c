@@ -145,10 +145,10 @@ PetscErrorCode DoubleLayerPlace(DoubleLayer s) {
 
 /* The jump of markers that move with U, and tensors of its dipoles, less its flux; zero where there is no jump, as for
    a ratio of 1, which has no normals. */
-static PetscErrorCode DoubleLayerSetDipoles(DoubleLayer s, const PetscScalar U[]) {
+static PetscErrorCode DoubleLayerSetDipoles(DoubleLayer s, Vec U) {
   const Layout l = s->near->set.bodies->membrane->layout; /* obstacles, whose J is zero, come behind */
   PetscFunctionBeginUser;
-  PetscCall(LayoutGather(l, 2, U, s->plain));
+  PetscCall(LayoutGatherVec(l, U, s->plain));
   for (PetscInt v = 0; v < l->bodies; v++) {
     const PetscInt first = 2 * l->start[v], end = 2 * l->start[v + 1];
     PetscReal flux = 0;
@@ -179,7 +179,7 @@ static void DoubleLayerAddMean(DoubleLayer s, PetscReal mean[2]) {
   }
 }
 
-PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScalar U[], PetscScalar y[]) {
+PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, Vec U, PetscScalar y[]) {
   const Layout l = s->near->set.bodies->layout;
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(s->apply, 0, 0, 0, 0));
@@ -192,14 +192,14 @@ PetscErrorCode DoubleLayerApply(DoubleLayer s, PetscReal alpha, const PetscScala
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerMean(DoubleLayer s, const PetscScalar U[], PetscReal mean[2]) {
+PetscErrorCode DoubleLayerMean(DoubleLayer s, Vec U, PetscReal mean[2]) {
   PetscFunctionBeginUser;
   PetscCall(DoubleLayerSetDipoles(s, U));
   DoubleLayerAddMean(s, mean);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerSpread(DoubleLayer s, const PetscScalar U[], Forcing *f) {
+PetscErrorCode DoubleLayerSpread(DoubleLayer s, Vec U, Forcing *f) {
   PetscFunctionBeginUser;
   if (s->near->set.markers->grid->free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DoubleLayerSetDipoles(s, U));
@@ -209,8 +209,7 @@ PetscErrorCode DoubleLayerSpread(DoubleLayer s, const PetscScalar U[], Forcing *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool own, const PetscReal profile[],
-                               DipoleRows rows) {
+PetscErrorCode DoubleLayerRows(DoubleLayer s, Vec U, PetscBool own, const PetscReal profile[], DipoleRows rows) {
   PetscReal mean[2] = {0, 0};
   PetscFunctionBeginUser;
   PetscCall(DoubleLayerSetDipoles(s, U));
@@ -219,7 +218,7 @@ PetscErrorCode DoubleLayerRows(DoubleLayer s, const PetscScalar U[], PetscBool o
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode DoubleLayerStress(DoubleLayer s, const PetscScalar U[], PetscReal sum[3], PetscReal shortfall[2]) {
+PetscErrorCode DoubleLayerStress(DoubleLayer s, Vec U, PetscReal sum[3], PetscReal shortfall[2]) {
   const Markers m = s->near->set.markers;
   PetscFunctionBeginUser;
   PetscCall(DoubleLayerSetDipoles(s, U));

@@ -48,7 +48,7 @@ PETSC_EXTERN PetscErrorCode DoubleLayerDestroy(DoubleLayer *layer);
 PETSC_EXTERN PetscErrorCode DoubleLayerAddBoxPart(DoubleLayer layer, const FluidSpec *spec);
 PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
 
-/* In what follows the jump is that of the vesicles' markers that move with U[2n], this rank's part. Collective.
+/* In what follows the jump is that of the vesicles' markers that move with U. Collective.
 
    DoubleLayerApply - y += alpha (C_D J and the box part of its dipoles), this rank's part y[2n] of a marker vector of
    all bodies.
@@ -66,14 +66,12 @@ PETSC_EXTERN PetscErrorCode DoubleLayerPlace(DoubleLayer layer);
    DoubleLayerStress - sum[3] (xx, yy, xy) += minus nu INT (J n + n J) ds of J less its flux: what the dipoles add to
    the sum of force times place; shortfall[2] (u, v) += what their stencils lack of it across a channel along x
    (DipoleShortfall). */
-PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, const PetscScalar U[],
-                                             PetscScalar y[]);
-PETSC_EXTERN PetscErrorCode DoubleLayerMean(DoubleLayer layer, const PetscScalar U[], PetscReal mean[2]);
-PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, const PetscScalar U[], Forcing *f);
-PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, const PetscScalar U[], PetscBool own,
-                                            const PetscReal profile[], DipoleRows rows);
-PETSC_EXTERN PetscErrorCode DoubleLayerStress(DoubleLayer layer, const PetscScalar U[], PetscReal sum[3],
-                                              PetscReal shortfall[2]);
+PETSC_EXTERN PetscErrorCode DoubleLayerApply(DoubleLayer layer, PetscReal alpha, Vec U, PetscScalar y[]);
+PETSC_EXTERN PetscErrorCode DoubleLayerMean(DoubleLayer layer, Vec U, PetscReal mean[2]);
+PETSC_EXTERN PetscErrorCode DoubleLayerSpread(DoubleLayer layer, Vec U, Forcing *f);
+PETSC_EXTERN PetscErrorCode DoubleLayerRows(DoubleLayer layer, Vec U, PetscBool own, const PetscReal profile[],
+                                            DipoleRows rows);
+PETSC_EXTERN PetscErrorCode DoubleLayerStress(DoubleLayer layer, Vec U, PetscReal sum[3], PetscReal shortfall[2]);
 
 /* DoubleLayerAdd - out += scale C_D (1 - ratio) (without box part) or, without lattice, D (1 - ratio), between the
    markers first .. first + n - 1: out[2n][2n], columns one after another, the rows of own markers only. Not collective.

@@ -93,22 +93,14 @@ PetscErrorCode MobilityAddLayers(Mobility m, Vec F, Vec G, PetscScalar U[]) {
     SeepageApply(m->bodies->membrane, m->markers->X, -1, a, U);
     PetscCall(VecRestoreArrayRead(F, &a));
   }
-  if (m->contrast && G) {
-    PetscCall(VecGetArrayRead(G, &a));
-    PetscCall(DoubleLayerApply(m->contrast, 1, a, U));
-    PetscCall(VecRestoreArrayRead(G, &a));
-  }
+  if (m->contrast && G) PetscCall(DoubleLayerApply(m->contrast, 1, G, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The dipoles of the motion G as rows of the stream, with their force where the forcing has not got it. */
 static PetscErrorCode MobilitySetDipoles(Mobility m, Vec G, PetscBool own) {
-  const PetscScalar *a;
   PetscFunctionBeginUser;
-  if (!m->contrast) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(G, &a));
-  PetscCall(DoubleLayerRows(m->contrast, a, own, StreamProfile(m->stream), m->dipoles));
-  PetscCall(VecRestoreArrayRead(G, &a));
+  if (m->contrast) PetscCall(DoubleLayerRows(m->contrast, G, own, StreamProfile(m->stream), m->dipoles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,19 +180,14 @@ static PetscErrorCode MobilityFollowFlow(Mobility m, Vec F, Vec U) {
 }
 
 PetscErrorCode MobilityAdd(Mobility m, Vec F, Vec G, Vec U) {
-  const PetscScalar *a;
   PetscFunctionBeginUser;
   m->added++;
   PetscCall(VecAXPY(m->F, 1, F));
   if (m->contrast) PetscCall(VecAXPY(m->G, 1, G));
   if (m->stokes) {
-    const Vec jumps = m->added == 1 ? m->G : G; /* the first time with what is known of the motion */
     PetscCall(ForcingSpread(m->known->f, m->markers, -1 / PetscSqr(m->fluid->grid->h), F));
-    if (m->contrast) {
-      PetscCall(VecGetArrayRead(jumps, &a));
-      PetscCall(DoubleLayerSpread(m->contrast, a, m->known->f));
-      PetscCall(VecRestoreArrayRead(jumps, &a));
-    }
+    if (m->contrast) /* the first time with what is known of the motion */
+      PetscCall(DoubleLayerSpread(m->contrast, m->added == 1 ? m->G : G, m->known->f));
     if (m->known->past)
       PetscCall(MobilityFollowFlow(m, F, U));
     else { /* E u of the whole forcing */

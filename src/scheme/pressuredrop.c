@@ -89,12 +89,9 @@ static PetscReal BackgroundFlux(Scheme s) {
 /* Mean of the solved field minus that of the velocity. They differ inside vesicles with a viscosity contrast, after the
    first step. */
 static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
-  const PetscScalar *U;
   PetscFunctionBeginUser;
   if (!s->coupling->mobility->contrast || !s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(s->state.U, &U));
-  PetscCall(DoubleLayerMean(s->coupling->mobility->contrast, U, mean));
-  PetscCall(VecRestoreArrayRead(s->state.U, &U));
+  PetscCall(DoubleLayerMean(s->coupling->mobility->contrast, s->state.U, mean));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

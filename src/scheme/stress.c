@@ -90,7 +90,6 @@ PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X, Vec U) {
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
   const PetscReal scale = s->fluid->nu * s->scene->flow.rate;
-  const PetscScalar *u;
   Stress *out = &s->report.stress;
   PetscReal sum[3], near[2], shear = 0, pressure = 0;
   PetscFunctionBeginUser;
@@ -98,9 +97,7 @@ PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X, Vec U) {
   PetscCall(WallStress(s, w, p, &shear, &pressure));
   PetscCall(Stresslets(s, F, X, sum));
   PetscCall(Shortfall(s, F, near));
-  PetscCall(VecGetArrayRead(U, &u));
-  if (s->coupling->mobility->contrast) PetscCall(DoubleLayerStress(s->coupling->mobility->contrast, u, sum, near));
-  PetscCall(VecRestoreArrayRead(U, &u));
+  if (s->coupling->mobility->contrast) PetscCall(DoubleLayerStress(s->coupling->mobility->contrast, U, sum, near));
   out->viscosity[0] = 1 + (shear - near[0] / area) / scale;
   out->viscosity[1] = 1 - sum[2] / area / scale;
   out->normal[0] = pressure + (near[1] - sum[0]) / area;

@@ -130,8 +130,9 @@ static void AddNearField(Direct *d) {
   const Obstacles o = d->c->bodies->obstacles;
   const PetscInt n = 2 * d->c->bodies->layout->M, solid = d->first[PART_SOLID];
   const PetscReal h2 = PetscSqr(d->grid->h);
+  const MarkerRange every = {0, n / 2};
   PetscReal *C = TestReals(n * n);
-  if (d->c->mobility->near) TestCall(NearFieldAdd(d->c->mobility->near, h2, PETSC_TRUE, 0, n / 2, C));
+  if (d->c->mobility->near) TestCall(NearFieldAdd(d->c->mobility->near, h2, PETSC_TRUE, &every, &every, C));
   for (PetscInt k = 0; k < n * n; k++) DirectAdd(d, DirectRow(d, k % n), d->first[PART_F] + k / n, C[k]);
   for (PetscInt b = 0; o && b < o->layout->bodies; b++)
     for (PetscInt i = 2 * o->layout->start[b]; i < 2 * o->layout->start[b + 1]; i++)
@@ -193,7 +194,7 @@ static void RightHandSide(const Direct *d, const CoupledProblem *q, Vec rhs) {
   TestCall(MobilityAddLayers(m, known->F, known->G, k));
   for (PetscInt v = 0; v < l->bodies; v++)
     for (PetscInt i = 2 * l->start[v]; i < 2 * l->start[v + 1]; i++) k[i] -= MobilityWeight(m, v) * G[i];
-  if (m->contrast) TestCall(DoubleLayerSpread(m->contrast, G, known->f));
+  if (m->contrast) TestCall(DoubleLayerSpread(m->contrast, known->G, known->f));
   TestCall(MobilityBegin(m, known));
   TestCall(VecSet(rhs, 0));
   PetscScalar *b = TestArray(rhs);

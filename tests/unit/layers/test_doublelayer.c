@@ -93,13 +93,12 @@ static void Respond(Double *d) {
   Forcing f = {.values = d->r, .source = d->p};
   TestCall(VecSet(d->r, 0));
   TestCall(VecSet(d->p, 0));
-  const PetscScalar *u = TestArray(d->U);
-  TestCall(DoubleLayerSpread(c->mobility->contrast, u, &f));
+  TestCall(DoubleLayerSpread(c->mobility->contrast, d->U, &f));
   TestCall(StokesSolve(TestWorldStokes(&d->world), d->r, d->p, d->w, d->p));
   if (!g->wall[1]) AddConstant(d->w, GridLocalU(g), f.mean);
   TestCall(MarkersInterpolate(c->markers, d->w, d->V));
   PetscScalar *v = TestArray(d->V);
-  TestCall(DoubleLayerApply(c->mobility->contrast, 1, u, v));
+  TestCall(DoubleLayerApply(c->mobility->contrast, 1, d->U, v));
 }
 
 /* U of marker k: e_x, e_y, a turn, or along the curve. */
