@@ -97,6 +97,23 @@ void DenseAddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscR
       for (int c = 0; c < 2; c++) A[(2 * j + c) * lda + 2 * k + c] += first[2 * (k < j ? k - j + n : k - j)];
 }
 
+PetscErrorCode DenseLeastSquares(PetscInt m, PetscInt n, PetscReal A[], PetscInt nrhs, PetscReal B[], PetscReal least,
+                                 PetscReal singular[]) {
+  PetscBLASInt rows, columns, sides, room, rank, info;
+  PetscReal *work;
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(m, &rows));
+  PetscCall(PetscBLASIntCast(n, &columns));
+  PetscCall(PetscBLASIntCast(nrhs, &sides));
+  PetscCall(PetscBLASIntCast(8 * (m + n), &room));
+  PetscCall(PetscMalloc1(room, &work));
+  PetscCallBLAS("LAPACKgelss",
+                LAPACKgelss_(&rows, &columns, &sides, A, &rows, B, &rows, singular, &least, &rank, work, &room, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's gelss failed: %d", (int)info);
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]) {
   PetscBLASInt size, room, integers, info, *iwork;
   PetscReal *work;

@@ -45,5 +45,10 @@ PETSC_EXTERN PetscErrorCode DenseGram(PetscInt n, PetscInt k, const PetscReal A[
    by first[2n], what the map makes of a unit of the first component at point 0. Not collective. */
 PETSC_EXTERN void DenseAddCirculant(PetscInt n, const PetscReal first[], PetscInt lda, PetscReal A[]);
 
+/* DenseLeastSquares - the x of least |A x - b| for each of nrhs columns b of B, which its first n numbers become; A (m
+   x n), m >= n, is work. singular[n], descending: its singular values; those up to `least` of the first count as 0. */
+PETSC_EXTERN PetscErrorCode DenseLeastSquares(PetscInt m, PetscInt n, PetscReal A[], PetscInt nrhs, PetscReal B[],
+                                              PetscReal least, PetscReal singular[]);
+
 /* DenseEigen - eigenvalues l[n], ascending, of the symmetric A (n x n), whose columns become the eigenvectors. */
 PETSC_EXTERN PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal l[]);

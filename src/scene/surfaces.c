@@ -20,7 +20,7 @@ static PetscErrorCode SurfaceRevolved(Scene s, PetscInt v, const PetscReal axes[
     PetscCall(ShapeCapsule(revolved, reduced, R, c));
   else
     SurfaceSpheroid(s->space.degree, axes[0], axes[1], c);
-  SphereUnfold(revolved, c, X);
+  SphereUnfold(revolved, 3, c, X);
   PetscCall(PetscFree(c));
   PetscCall(SphereDestroy(&revolved));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -99,7 +99,7 @@ static PetscErrorCode SurfaceCheckRevolved(Scene s, PetscInt v, PetscReal R0, co
   PetscCall(SphereCreate(s->space.degree, SPHERE_REVOLVED, &revolved));
   PetscCall(PetscMalloc2(revolved->size, &c, size, &again));
   SphereFold(revolved, X, c);
-  SphereUnfold(revolved, c, again);
+  SphereUnfold(revolved, 3, c, again);
   for (PetscInt k = 0; k < size; k++) off = PetscMax(off, PetscAbsReal(again[k] - X[k]));
   const PetscBool outward = (PetscBool)(c[s->space.degree + 1] > 0); /* the distance from the axis is positive */
   PetscCall(PetscFree2(c, again));

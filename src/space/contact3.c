@@ -18,8 +18,8 @@ static PetscReal NearEntryDistance2(const NearLevel *l, const NearEntry *e) {
 /* Areas of the points of a patch. */
 static PetscErrorCode ContactAreas(const NearPatch *p, PetscInt count, const PetscReal J[], PetscReal area[]) {
   PetscFunctionBeginUser;
-  PetscCall(DenseProduct(PETSC_FALSE, p->n, 1, count, p->Y, J, area));
-  for (PetscInt i = 0; i < p->n; i++) area[i] *= p->weight[i];
+  PetscCall(SphereTableValues(&p->table, HARMONIC, count, 1, J, area));
+  for (PetscInt i = 0; i < p->n; i++) area[i] *= p->table.grid.weight[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -71,32 +71,31 @@ PetscErrorCode Contact3Destroy(Contact3 *c) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Contact3Add(const Contact3 *c, PetscInt count, const PetscReal *const change[2], PetscReal *const G[2]) {
+PetscErrorCode Contact3Add(const Contact3 *c, PetscInt count, PetscBool gradient, const PetscReal *const change[2],
+                           PetscReal *const G[2]) {
   PetscReal *x[2], *g[2];
   PetscFunctionBeginUser;
   if (!c->entries) PetscFunctionReturn(PETSC_SUCCESS);
   const NearPatch *a = &c->level->patch[0], *b = &c->level->patch[1];
   PetscCall(PetscMalloc2(3 * a->n, &x[0], 3 * b->n, &x[1]));
   PetscCall(PetscCalloc2(3 * a->n, &g[0], 3 * b->n, &g[1]));
-  for (int side = 0; side < 2 && change; side++) {
-    const NearPatch *p = &c->level->patch[side];
-    PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y, change[side], x[side]));
-  }
+  for (int side = 0; side < 2; side++)
+    PetscCall(SphereFieldValues(&c->level->patch[side].table, HARMONIC, change[side], x[side]));
   for (const NearEntry *e = c->entry; e < c->entry + c->entries; e++) {
-    PetscReal d[3], along = 0;
+    PetscReal d[3], along = gradient ? e->a : 0;
     for (int q = 0; q < 3; q++) {
       d[q] = a->X[q * a->n + e->i] - b->X[q * b->n + e->j];
-      if (change) along += e->b * d[q] * (x[0][q * a->n + e->i] - x[1][q * b->n + e->j]);
+      along += e->b * d[q] * (x[0][q * a->n + e->i] - x[1][q * b->n + e->j]);
     }
     for (int q = 0; q < 3; q++) {
-      g[0][q * a->n + e->i] += (change ? along : e->a) * d[q];
-      g[1][q * b->n + e->j] -= (change ? along : e->a) * d[q];
+      g[0][q * a->n + e->i] += along * d[q];
+      g[1][q * b->n + e->j] -= along * d[q];
     }
   }
   for (int side = 0; side < 2; side++) {
     const NearPatch *p = &c->level->patch[side];
     if (G[side])
-      PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){p->Y, p->n, count, p->n},
+      PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){p->table.part[HARMONIC], p->n, count, p->n},
                                    (DenseView){g[side], p->n, 3, p->n}, 1, G[side], count));
   }
   PetscCall(PetscFree2(x[0], x[1]));

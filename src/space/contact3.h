@@ -25,10 +25,11 @@ typedef struct {
 } Contact3;
 
 /* Contact3Create - of a pair of surfaces with these coefficients of dA/domega, J1[count] and J2[count].
-   Contact3Add - G[side][3][count] += the gradient of the energy by the coefficients, or (change[side][3][count] not
-   NULL) what a change of the surfaces adds to it. G[side] NULL: not wanted. Not collective. Errors: memory. */
+   Contact3Add - G[side][3][count] += what a change of the surfaces, change[side][3][count], adds to the gradient of the
+   energy by the coefficients, and where asked for the gradient. G[side] NULL: not wanted. Not collective. Errors:
+   memory. */
 PETSC_EXTERN PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const PetscReal J1[],
                                            const PetscReal J2[], Contact3 *contact);
 PETSC_EXTERN PetscErrorCode Contact3Destroy(Contact3 *contact);
-PETSC_EXTERN PetscErrorCode Contact3Add(const Contact3 *contact, PetscInt count, const PetscReal *const change[2],
-                                        PetscReal *const G[2]);
+PETSC_EXTERN PetscErrorCode Contact3Add(const Contact3 *contact, PetscInt count, PetscBool gradient,
+                                        const PetscReal *const change[2], PetscReal *const G[2]);

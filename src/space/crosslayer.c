@@ -2,7 +2,6 @@
 #include "base/agree.h"
 #include "base/lanes.h"
 #include "sphere/spherelayer.h"
-#include "sphere/surface.h"
 
 PetscErrorCode ShareGather(const VesicleShare *s, PetscInt each, const PetscReal own[], PetscReal all[]) {
   PetscMPIInt n;
@@ -11,12 +10,6 @@ PetscErrorCode ShareGather(const VesicleShare *s, PetscInt each, const PetscReal
   PetscCall(PetscArrayzero(all, n));
   PetscCall(PetscArraycpy(all + s->first * each, own, s->own * each));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, n, MPIU_REAL, MPI_SUM, s->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ShareScatter(const VesicleShare *s, PetscInt each, const PetscReal all[], PetscReal own[]) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(own, all + s->first * each, s->own * each));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,6 +27,8 @@ PetscErrorCode CrossLayerCreate(Sphere fields, VesicleShare share, PetscReal nu,
   const PetscInt n = 3 * share.vesicles * c->sphere->shape.grid.n;
   PetscCall(PetscMalloc4(share.vesicles * c->sphere->size, &c->X, n, &c->points, kernels > STRESSLET ? n : 0,
                          &c->normals, share.own * share.vesicles, &c->pair));
+  PetscCall(PetscCalloc1(share.vesicles, &c->surface));
+  for (PetscInt v = 0; v < share.vesicles; v++) PetscCall(SurfaceCreate(c->sphere, &c->surface[v]));
   PetscCall(NearTablesCreate(kernels, &c->tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -55,6 +50,8 @@ PetscErrorCode CrossLayerDestroy(CrossLayer *cross) {
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CrossForgetPairs(c));
   PetscCall(NearTablesDestroy(&c->tables));
+  for (PetscInt v = 0; v < c->share.vesicles; v++) PetscCall(SurfaceDestroy(&c->surface[v]));
+  PetscCall(PetscFree(c->surface));
   PetscCall(PetscFree4(c->X, c->points, c->normals, c->pair));
   if (c->sphere != c->fields) PetscCall(SphereDestroy(&c->sphere));
   PetscCall(PetscFree(*cross));
@@ -67,7 +64,7 @@ static PetscErrorCode CrossGather(CrossLayer c, const PetscReal own[], PetscReal
   PetscReal *here;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(c->share.own * size, &here));
-  for (PetscInt v = 0; v < c->share.own; v++) SphereUnfold(c->fields, own + v * c->fields->size, here + v * size);
+  for (PetscInt v = 0; v < c->share.own; v++) SphereUnfold(c->fields, 3, own + v * c->fields->size, here + v * size);
   PetscCall(ShareGather(&c->share, size, here, whole));
   PetscCall(PetscFree(here));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,32 +84,27 @@ static PetscErrorCode CrossAddFields(CrossLayer c, const PetscReal whole[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A surface as its neighbours see it. */
+/* A surface as its neighbours see it from afar. */
 typedef struct {
-  PetscReal *X, *normal; /* [3][n] points of the fine grid, unit normals */
-  PetscReal center[3], radius;
-  PetscReal spacing; /* the largest one of the grid of degree p */
+  PetscReal center[3], radius; /* of a ball around it */
+  PetscReal spacing;           /* the largest one of the grid of degree p */
 } Outline;
 
-static PetscErrorCode OutlineMake(CrossLayer c, Surface s, PetscInt v, Outline *o) {
-  PetscFunctionBeginUser;
-  PetscCall(SurfacePlace(s, c->X + v * 3 * c->sphere->count, PETSC_FALSE));
-  PetscCall(PetscMalloc2(3 * s->n, &o->X, 3 * s->n, &o->normal));
-  PetscCall(PetscArraycpy(o->X, s->D[HARMONIC], 3 * s->n));
-  PetscCall(PetscArraycpy(o->normal, s->normal, 3 * s->n));
-  for (int d = 0; d < 3; d++) o->center[d] = c->X[(v * 3 + d) * c->sphere->count] / PetscSqrtReal(4 * PETSC_PI);
-  o->radius = o->spacing = 0;
+static Outline OutlineOf(CrossLayer c, PetscInt v) {
+  const Surface s = c->surface[v];
+  Outline o = {.radius = 0};
+  for (int d = 0; d < 3; d++) o.center[d] = c->X[(v * 3 + d) * c->sphere->count] / PetscSqrtReal(4 * PETSC_PI);
   for (PetscInt i = 0; i < s->n; i++) {
     PetscReal r2 = 0, along[2] = {0, 0};
     for (int d = 0; d < 3; d++) {
-      r2 += PetscSqr(o->X[d * s->n + i] - o->center[d]);
+      r2 += PetscSqr(s->D[HARMONIC][d * s->n + i] - o.center[d]);
       along[0] += PetscSqr(s->D[HARMONIC_T][d * s->n + i]);
       along[1] += PetscSqr(s->D[HARMONIC_P][d * s->n + i]);
     }
-    o->radius = PetscMax(o->radius, PetscSqrtReal(r2));
-    o->spacing = PetscMax(o->spacing, PetscSqrtReal(PetscMax(along[0], along[1])) * PETSC_PI / (c->sphere->p + 1));
+    o.radius = PetscMax(o.radius, PetscSqrtReal(r2));
+    o.spacing = PetscMax(o.spacing, PetscSqrtReal(PetscMax(along[0], along[1])) * PETSC_PI / (c->sphere->p + 1));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return o;
 }
 
 /* Distance of the balls around two surfaces. */
@@ -123,36 +115,38 @@ static PetscReal OutlineApart(const Outline *a, const Outline *b) {
 }
 
 /* How far point i of a is outside b, along the normal at the point j of b. */
-static PetscReal OutlineOutside(PetscInt n, const Outline *a, PetscInt i, const Outline *b, PetscInt j) {
+static PetscReal CrossOutside(Surface a, PetscInt i, Surface b, PetscInt j) {
   PetscReal along = 0;
-  for (int d = 0; d < 3; d++) along += (a->X[d * n + i] - b->X[d * n + j]) * b->normal[d * n + j];
+  for (PetscInt d = 0; d < 3; d++)
+    along += (a->D[HARMONIC][d * a->n + i] - b->D[HARMONIC][d * b->n + j]) * b->normal[d * b->n + j];
   return along;
 }
 
 /* The gap of two surfaces: at the nearest points of their fine grids, along the normal. Where they overlap it is
    negative, the depth of a point of a below the point of b that is nearest to it. */
-static PetscReal OutlineGap(PetscInt n, const Outline *a, const Outline *b) {
+static PetscReal CrossGap(Surface a, Surface b) {
+  const PetscReal *X = a->D[HARMONIC], *Y = b->D[HARMONIC];
+  const PetscInt n = a->n;
   PetscReal least = PETSC_MAX_REAL, deepest = 0;
   PetscInt at[2] = {0, 0};
   for (PetscInt i = 0; i < n; i++) {
     PetscReal nearest = PETSC_MAX_REAL;
     PetscInt k = 0;
     for (PetscInt j = 0; j < n; j++) {
-      const PetscReal x = a->X[i] - b->X[j], y = a->X[n + i] - b->X[n + j], z = a->X[2 * n + i] - b->X[2 * n + j],
-                      r2 = x * x + y * y + z * z;
+      const PetscReal r2 = PetscSqr(X[i] - Y[j]) + PetscSqr(X[n + i] - Y[n + j]) +
+                           PetscSqr(X[2 * n + i] - Y[2 * n + j]);
       if (r2 >= nearest) continue;
       nearest = r2;
       k = j;
     }
-    const PetscReal outside = OutlineOutside(n, a, i, b, k);
+    const PetscReal outside = CrossOutside(a, i, b, k);
     if (outside < -0.5 * PetscSqrtReal(nearest)) deepest = PetscMin(deepest, outside);
     if (nearest >= least) continue;
     least = nearest;
     at[0] = i;
     at[1] = k;
   }
-  if (deepest < 0) return deepest;
-  return PetscMin(OutlineOutside(n, a, at[0], b, at[1]), OutlineOutside(n, b, at[1], a, at[0]));
+  return deepest < 0 ? deepest : PetscMin(CrossOutside(a, at[0], b, at[1]), CrossOutside(b, at[1], a, at[0]));
 }
 
 static PetscBool ShareOwns(const VesicleShare *s, PetscInt v) {
@@ -164,11 +158,9 @@ static PetscBool ShareOwns(const VesicleShare *s, PetscInt v) {
 static PetscErrorCode CrossFindPairs(CrossLayer c) {
   const VesicleShare *s = &c->share;
   Outline *outline;
-  Surface surface;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->vesicles, &outline));
-  PetscCall(SurfaceCreate(c->sphere, &surface));
-  for (PetscInt v = 0; v < s->vesicles; v++) PetscCall(OutlineMake(c, surface, v, &outline[v]));
+  for (PetscInt v = 0; v < s->vesicles; v++) outline[v] = OutlineOf(c, v);
   c->gap = PETSC_MAX_REAL;
   for (PetscInt v = 0; v < s->vesicles; v++)
     for (PetscInt w = v + 1; w < s->vesicles; w++) {
@@ -176,7 +168,7 @@ static PetscErrorCode CrossFindPairs(CrossLayer c) {
       PetscReal gap = OutlineApart(&outline[v], &outline[w]);
       if (!ShareOwns(s, v) && !ShareOwns(s, w)) continue;
       if (gap <= NearReach(spacing)) {
-        gap = OutlineGap(surface->n, &outline[v], &outline[w]);
+        gap = CrossGap(c->surface[v], c->surface[w]);
         c->pair[c->pairs++] = (CrossPair){.surface = {v, w}, .spacing = spacing};
       }
       if (gap >= c->gap) continue;
@@ -184,8 +176,6 @@ static PetscErrorCode CrossFindPairs(CrossLayer c) {
       c->nearest[0] = v;
       c->nearest[1] = w;
     }
-  for (PetscInt v = 0; v < s->vesicles; v++) PetscCall(PetscFree2(outline[v].X, outline[v].normal));
-  PetscCall(SurfaceDestroy(&surface));
   PetscCall(PetscFree(outline));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -205,6 +195,8 @@ PetscErrorCode CrossLayerMeasure(CrossLayer c, const PetscReal X[]) {
   PetscFunctionBeginUser;
   PetscCall(CrossForgetPairs(c));
   PetscCall(CrossGather(c, X, c->X));
+  for (PetscInt v = 0; v < c->share.vesicles; v++)
+    PetscCall(SurfacePlace(c->surface[v], c->X + v * c->sphere->size, PETSC_FALSE));
   PetscCall(CrossFindPairs(c));
   PetscCall(CrossAgreeGap(c));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -213,36 +205,15 @@ PetscErrorCode CrossLayerMeasure(CrossLayer c, const PetscReal X[]) {
 /* Contacts of the near pairs. */
 static PetscErrorCode CrossFindContacts(CrossLayer c) {
   const PetscInt count = c->sphere->count;
-  Surface s;
   PetscReal *J;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * count, &J));
-  PetscCall(SurfaceCreate(c->sphere, &s));
   for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
-    for (int side = 0; side < 2; side++) {
-      PetscCall(SurfacePlace(s, c->X + pair->surface[side] * 3 * count, PETSC_FALSE));
-      PetscCall(SphereTableProject(&c->sphere->fine, count, 1, s->J, J + side * count));
-    }
+    for (int side = 0; side < 2; side++)
+      PetscCall(SphereTableProject(&c->sphere->fine, count, 1, c->surface[pair->surface[side]]->J, J + side * count));
     PetscCall(Contact3Create(&c->law, pair->near, J, J + count, &pair->contact));
   }
-  PetscCall(SurfaceDestroy(&s));
   PetscCall(PetscFree(J));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* n dA/domega at the points of the grids of degree p. */
-static PetscErrorCode CrossFindNormals(CrossLayer c) {
-  const SphereTable *table = &c->sphere->shape;
-  const PetscInt n = table->grid.n, count = c->sphere->count;
-  PetscReal *T, *P;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(3 * n, &T, 3 * n, &P));
-  for (PetscInt v = 0; v < c->share.vesicles; v++) {
-    PetscCall(SphereTableValues(table, HARMONIC_T, count, 3, c->X + v * 3 * count, T));
-    PetscCall(SphereTableValues(table, HARMONIC_P, count, 3, c->X + v * 3 * count, P));
-    LayerNormals(n, table->grid.theta, T, P, c->normals + v * 3 * n);
-  }
-  PetscCall(PetscFree2(T, P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -252,7 +223,8 @@ PetscErrorCode CrossLayerPlace(CrossLayer c, const PetscReal X[]) {
   PetscCall(CrossLayerMeasure(c, X));
   if (c->gap <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SphereTableValues(&c->sphere->shape, HARMONIC, count, 3 * c->share.vesicles, c->X, c->points));
-  if (c->tables.kernels > STRESSLET) PetscCall(CrossFindNormals(c));
+  for (PetscInt v = 0; v < c->share.vesicles && c->tables.kernels > STRESSLET; v++)
+    PetscCall(LayerNormals(&c->sphere->shape, c->X + v * 3 * count, c->normals + v * 3 * c->sphere->shape.grid.n));
   for (CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++)
     PetscCall(NearPairCreate(c->sphere, &c->tables, pair->spacing, c->X + pair->surface[0] * 3 * count,
                              c->X + pair->surface[1] * 3 * count, &pair->near));
@@ -294,9 +266,9 @@ static void CrossAddPoints(PetscInt n, const PetscReal X[], const PetscReal Y[],
 static PetscErrorCode CrossAddGrids(CrossLayer c, NearKernel kernel, const PetscReal F[], PetscReal U[]) {
   const SphereTable *table = &c->sphere->shape;
   const PetscInt n = table->grid.n, count = c->sphere->count, all = 3 * c->share.vesicles;
-  PetscReal *f, *u, *part;
+  PetscReal *f, *u;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(all * n, &f, 3 * n, &u, 3 * count, &part));
+  PetscCall(PetscMalloc2(all * n, &f, 3 * n, &u));
   PetscCall(SphereTableValues(table, HARMONIC, count, all, F, f));
   for (PetscInt k = 0; k < all * n; k++) f[k] *= table->grid.weight[k % n] / (8 * PETSC_PI);
   for (PetscInt v = 0; v < c->share.own; v++) {
@@ -306,11 +278,20 @@ static PetscErrorCode CrossAddGrids(CrossLayer c, NearKernel kernel, const Petsc
       if (w != self)
         CrossAddPoints(n, c->points + self * 3 * n, c->points + w * 3 * n, f + w * 3 * n,
                        kernel == STRESSLET ? c->normals + w * 3 * n : NULL, u);
-    PetscCall(SphereTableProject(table, count, 3, u, part));
-    for (PetscInt k = 0; k < 3 * count; k++) U[v * 3 * count + k] += part[k];
+    PetscCall(SphereFieldAdd(table, u, U + v * 3 * count));
   }
-  PetscCall(PetscFree3(f, u, part));
+  PetscCall(PetscFree2(f, u));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What a pair's surfaces have of the fields all[vesicles] and, where they are own, whole[own]. */
+static void CrossSides(CrossLayer c, const CrossPair *pair, const PetscReal all[], const PetscReal *in[2],
+                       PetscReal whole[], PetscReal *out[2]) {
+  for (int side = 0; side < 2; side++) {
+    const PetscInt v = pair->surface[side], own = v - c->share.first;
+    in[side] = all + v * c->sphere->size;
+    out[side] = ShareOwns(&c->share, v) ? whole + own * c->sphere->size : NULL;
+  }
 }
 
 PetscErrorCode CrossLayerAdd(CrossLayer c, NearKernel kernel, const PetscReal F[], PetscReal U[]) {
@@ -326,11 +307,7 @@ PetscErrorCode CrossLayerAdd(CrossLayer c, NearKernel kernel, const PetscReal F[
   for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
     const PetscReal *f[2];
     PetscReal *u[2];
-    for (int side = 0; side < 2; side++) {
-      const PetscInt v = pair->surface[side];
-      f[side] = all + v * size;
-      u[side] = ShareOwns(s, v) ? whole + (v - s->first) * size : NULL;
-    }
+    CrossSides(c, pair, all, f, whole, u);
     PetscCall(NearPairAdd(pair->near, kernel, f, u));
   }
   PetscCall(CrossAddFields(c, whole, U));
@@ -348,41 +325,22 @@ PetscErrorCode CrossLayerEnergy(CrossLayer c, PetscReal *energy) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* G += the gradient of the energy, or what changes all[vesicles][size] add to it. */
-static PetscErrorCode CrossAddContacts(CrossLayer c, const PetscReal all[], PetscReal G[]) {
-  const VesicleShare *s = &c->share;
+PetscErrorCode CrossLayerAddContact(CrossLayer c, PetscBool gradient, const PetscReal change[], PetscReal G[]) {
   const PetscInt size = c->sphere->size;
-  PetscReal *whole;
+  PetscReal *all, *whole;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(s->own * size, &whole));
+  if (c->law.stress <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(c->share.vesicles * size, &all));
+  PetscCall(PetscCalloc1(c->share.own * size, &whole));
+  PetscCall(CrossGather(c, change, all));
   for (const CrossPair *pair = c->pair; pair < c->pair + c->pairs; pair++) {
     const PetscReal *moved[2];
     PetscReal *g[2];
-    for (int side = 0; side < 2; side++) {
-      const PetscInt v = pair->surface[side];
-      moved[side] = all ? all + v * size : NULL;
-      g[side] = ShareOwns(s, v) ? whole + (v - s->first) * size : NULL;
-    }
-    PetscCall(Contact3Add(&pair->contact, c->sphere->count, all ? moved : NULL, g));
+    CrossSides(c, pair, all, moved, whole, g);
+    PetscCall(Contact3Add(&pair->contact, c->sphere->count, gradient, moved, g));
   }
   PetscCall(CrossAddFields(c, whole, G));
-  PetscCall(PetscFree(whole));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CrossLayerAddRepulsion(CrossLayer c, PetscReal G[]) {
-  PetscFunctionBeginUser;
-  PetscCall(CrossAddContacts(c, NULL, G));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode CrossLayerAddStiffness(CrossLayer c, const PetscReal change[], PetscReal G[]) {
-  PetscReal *all;
-  PetscFunctionBeginUser;
-  if (c->law.stress <= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(c->share.vesicles * c->sphere->size, &all));
-  PetscCall(CrossGather(c, change, all));
-  PetscCall(CrossAddContacts(c, all, G));
   PetscCall(PetscFree(all));
+  PetscCall(PetscFree(whole));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,6 +5,7 @@
    goes out does not know. */
 #pragma once
 #include "space/contact3.h"
+#include "sphere/surface.h"
 
 /* Which vesicles a rank owns. */
 typedef struct {
@@ -12,12 +13,9 @@ typedef struct {
   PetscInt vesicles, first, own; /* number of all, first own one, number of own ones */
 } VesicleShare;
 
-/* ShareGather - all[vesicles][each] on every rank of own[own][each]; collective. ShareScatter - own[own][each] of
-   all[vesicles][each]; not collective. */
+/* ShareGather - all[vesicles][each] on every rank of own[own][each]. Collective. */
 PETSC_EXTERN PetscErrorCode ShareGather(const VesicleShare *share, PetscInt each, const PetscReal own[],
                                         PetscReal all[]);
-PETSC_EXTERN PetscErrorCode ShareScatter(const VesicleShare *share, PetscInt each, const PetscReal all[],
-                                         PetscReal own[]);
 
 typedef struct {
   PetscInt surface[2];
@@ -34,6 +32,7 @@ struct _p_CrossLayer {
   PetscReal nu;
   Contact3Law law;
   PetscReal *X;       /* [vesicles][3 count] of all */
+  Surface *surface;   /* [vesicles] there */
   PetscReal *points;  /* [vesicles][3][n] on the grids of degree p */
   PetscReal *normals; /* [vesicles][3][n] n dA/domega there, of stresslets */
   NearTables tables;
@@ -55,9 +54,8 @@ PETSC_EXTERN PetscErrorCode CrossLayerMeasure(CrossLayer cross, const PetscReal 
 PETSC_EXTERN PetscErrorCode CrossLayerPlace(CrossLayer cross, const PetscReal X[]);
 PETSC_EXTERN PetscErrorCode CrossLayerAdd(CrossLayer cross, NearKernel kernel, const PetscReal F[], PetscReal U[]);
 
-/* CrossLayerEnergy - of repulsion, where surfaces have been placed. CrossLayerAddRepulsion - G[own][size] += its
-   gradient. CrossLayerAddStiffness - G[own][size] += what a change of the surfaces, change[own][size], adds to the
-   gradient. Collective. */
+/* CrossLayerEnergy - of contact, where surfaces have been placed. CrossLayerAddContact - G[own][size] += what a
+   change of the surfaces, change[own][size], adds to its gradient, and where asked for the gradient. Collective. */
 PETSC_EXTERN PetscErrorCode CrossLayerEnergy(CrossLayer cross, PetscReal *energy);
-PETSC_EXTERN PetscErrorCode CrossLayerAddRepulsion(CrossLayer cross, PetscReal G[]);
-PETSC_EXTERN PetscErrorCode CrossLayerAddStiffness(CrossLayer cross, const PetscReal change[], PetscReal G[]);
+PETSC_EXTERN PetscErrorCode CrossLayerAddContact(CrossLayer cross, PetscBool gradient, const PetscReal change[],
+                                                 PetscReal G[]);

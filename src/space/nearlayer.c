@@ -1,5 +1,4 @@
 #include "space/nearlayer.h"
-#include "numerics/blas.h"
 #include "sphere/spherelayer.h"
 
 #define WIDTH 0.8  /* delta_0 over the spacing */
@@ -41,45 +40,31 @@ static PetscInt NearStride(PetscInt k, PetscReal theta) {
   return stride;
 }
 
-/* n dA/domega at the points of a patch, whose harmonics are in Y with their first derivatives. */
-static PetscErrorCode NearPatchNormals(PetscInt count, const PetscReal c[], NearPatch *p) {
-  PetscReal *T, *P;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * p->n, &p->normal));
-  PetscCall(PetscMalloc2(3 * p->n, &T, 3 * p->n, &P));
-  PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y + HARMONIC_T * count * p->n, c, T));
-  PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y + HARMONIC_P * count * p->n, c, P));
-  LayerNormals(p->n, p->theta, T, P, p->normal);
-  PetscCall(PetscFree2(T, P));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Of points of level k whose numbers are set. */
 static PetscErrorCode NearPatchCreate(Sphere s, const NearTables *t, PetscInt k, const PetscReal c[], NearPatch *p) {
   const SphereGrid *grid = k ? &t->grid[k] : &s->shape.grid;
   const PetscInt parts = t->kernels > STRESSLET ? HARMONIC_P + 1 : 1;
-  PetscReal *phi;
+  PetscReal *theta, *phi, *weight;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc5(parts * s->count * p->n, &p->Y, 3 * p->n, &p->X, p->n, &p->weight, p->n, &p->distance, p->n,
-                         &p->theta));
-  PetscCall(PetscMalloc1(p->n, &phi));
+  PetscCall(PetscMalloc3(p->n, &theta, p->n, &phi, p->n, &weight));
   for (PetscInt i = 0; i < p->n; i++) {
-    p->theta[i] = grid->theta[p->point[i]];
+    theta[i] = grid->theta[p->point[i]];
     phi[i] = grid->phi[p->point[i]];
-    p->weight[i] = (PetscReal)NearStride(k, p->theta[i]) * grid->weight[p->point[i]];
+    weight[i] = (PetscReal)NearStride(k, theta[i]) * grid->weight[p->point[i]];
   }
-  PetscCall(HarmonicsAt(s->p, p->n, p->theta, phi, parts, p->Y));
-  PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, s->count, p->Y, c, p->X));
-  if (parts > 1) PetscCall(NearPatchNormals(s->count, c, p));
-  PetscCall(PetscFree(phi));
+  PetscCall(SphereTableAt(s->p, p->n, theta, phi, weight, parts, &p->table));
+  PetscCall(PetscFree3(theta, phi, weight));
+  PetscCall(PetscMalloc3(3 * p->n, &p->X, 3 * p->n, &p->normal, p->n, &p->distance));
+  PetscCall(SphereFieldValues(&p->table, HARMONIC, c, p->X));
+  if (parts > 1) PetscCall(LayerNormals(&p->table, c, p->normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode NearPatchDestroy(NearPatch *p) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(p->point));
-  PetscCall(PetscFree(p->normal));
-  PetscCall(PetscFree5(p->Y, p->X, p->weight, p->distance, p->theta));
+  PetscCall(PetscFree3(p->X, p->normal, p->distance));
+  PetscCall(SphereTableDestroy(&p->table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,7 +90,7 @@ static PetscErrorCode NearPatchRefine(Sphere s, const NearTables *t, const NearP
   for (PetscInt i = 0; i < coarse->n; i++) {
     const PetscInt latitude = coarse->point[i] / (around / 2), longitude = coarse->point[i] % (around / 2);
     if (coarse->distance[i] > within) continue;
-    const PetscInt cell = 2 * NearStride(k - 1, coarse->theta[i]);
+    const PetscInt cell = 2 * NearStride(k - 1, coarse->table.grid.theta[i]);
     for (PetscInt row = 2 * latitude; row < 2 * latitude + 2; row++)
       for (PetscInt m = 0; m < cell; m += NearStride(k, grid->theta[row * around]))
         p->point[p->n++] = row * around + 2 * longitude + m;
@@ -226,14 +211,6 @@ PetscErrorCode NearPairDestroy(NearPair *pair) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces of both patches, by their weights; F, f[side]. */
-static PetscErrorCode NearForces(const NearPatch *p, PetscInt count, const PetscReal F[], PetscReal f[]) {
-  PetscFunctionBeginUser;
-  PetscCall(DenseProduct(PETSC_FALSE, p->n, 3, count, p->Y, F, f));
-  for (PetscInt i = 0; i < 3 * p->n; i++) f[i] *= p->weight[i % p->n];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* u += a kernel at the distance d from a source of the strength f, with the normal `normal` (NULL: a Stokeslet); f and
    normal have their components n numbers apart, u as many as there are targets. */
 static inline void NearAct(const NearEntry *e, const PetscReal d[3], PetscInt n, const PetscReal f[],
@@ -254,7 +231,6 @@ static inline void NearAct(const NearEntry *e, const PetscReal d[3], PetscInt n,
 }
 
 PetscErrorCode NearPairAdd(NearPair pair, NearKernel kernel, const PetscReal *const F[2], PetscReal *const U[2]) {
-  const PetscInt count = pair->sphere->count;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < pair->levels; k++) {
     const NearLevel *l = &pair->level[k];
@@ -262,7 +238,11 @@ PetscErrorCode NearPairAdd(NearPair pair, NearKernel kernel, const PetscReal *co
     PetscReal *f[2], *u[2];
     PetscCall(PetscMalloc2(3 * a->n, &f[0], 3 * b->n, &f[1]));
     PetscCall(PetscCalloc2(3 * a->n, &u[0], 3 * b->n, &u[1]));
-    for (int side = 0; side < 2; side++) PetscCall(NearForces(&l->patch[side], count, F[side], f[side]));
+    for (int side = 0; side < 2; side++) {
+      const SphereTable *table = &l->patch[side].table;
+      PetscCall(SphereFieldValues(table, HARMONIC, F[side], f[side]));
+      for (PetscInt i = 0; i < 3 * table->grid.n; i++) f[side][i] *= table->grid.weight[i % table->grid.n];
+    }
     for (const NearEntry *e = l->entry[kernel]; e < l->entry[kernel] + l->entries; e++) {
       PetscReal d[3], back[3];
       for (int q = 0; q < 3; q++) {
@@ -272,13 +252,8 @@ PetscErrorCode NearPairAdd(NearPair pair, NearKernel kernel, const PetscReal *co
       NearAct(e, d, b->n, f[1] + e->j, kernel == STRESSLET ? b->normal + e->j : NULL, a->n, u[0] + e->i);
       NearAct(e, back, a->n, f[0] + e->i, kernel == STRESSLET ? a->normal + e->i : NULL, b->n, u[1] + e->j);
     }
-    for (int side = 0; side < 2; side++) {
-      const NearPatch *p = &l->patch[side];
-      for (PetscInt i = 0; i < 3 * p->n; i++) u[side][i] *= p->weight[i % p->n];
-      if (U[side])
-        PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){p->Y, p->n, count, p->n},
-                                     (DenseView){u[side], p->n, 3, p->n}, 1, U[side], count));
-    }
+    for (int side = 0; side < 2; side++)
+      if (U[side]) PetscCall(SphereFieldAdd(&l->patch[side].table, u[side], U[side]));
     PetscCall(PetscFree2(f[0], f[1]));
     PetscCall(PetscFree2(u[0], u[1]));
   }

@@ -29,11 +29,11 @@ typedef enum { STOKESLET, STRESSLET, NEAR_KERNELS } NearKernel;
 
 /* Some points of a grid on a surface. */
 typedef struct {
-  PetscInt n, *point;        /* [n] their numbers in the grid */
-  PetscReal *Y, *X;          /* [count][n] harmonics, [3][n] */
-  PetscReal *normal;         /* [3][n] n dA/domega; NULL: no stresslets */
-  PetscReal *weight, *theta; /* [n] */
-  PetscReal *distance;       /* [n] to the other patch */
+  PetscInt n, *point;  /* [n] their numbers in the grid */
+  SphereTable table;   /* of these points */
+  PetscReal *X;        /* [3][n] */
+  PetscReal *normal;   /* [3][n] n dA/domega, of stresslets */
+  PetscReal *distance; /* [n] to the other patch */
 } NearPatch;
 
 /* A pair of points, i of the first surface and j of the second, and the factors of a kernel. */

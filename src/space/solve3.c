@@ -16,8 +16,7 @@ static PetscErrorCode SpaceAddDoubleLayers(Space s, const PetscReal U[], PetscRe
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->share.own * s->size, &jump));
   for (PetscInt k = 0; k < s->share.own * s->size; k++) jump[k] = (1 - s->vesicle[k / s->size]->setting.ratio) * U[k];
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(Vesicle3RemoveMotion(s->vesicle[v], s->work.Xstar + v * s->size, jump + v * s->size));
+  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3RemoveMotion(s->vesicle[v], jump + v * s->size));
   PetscCall(CrossLayerAdd(s->cross, STRESSLET, jump, V));
   if (s->tube.tube) PetscCall(SpaceAddTube(s, STRESSLET, jump, V));
   PetscCall(PetscFree(jump));
@@ -42,7 +41,7 @@ static PetscErrorCode SpaceForces(Space s, const PetscScalar x[]) {
     PetscCall(Vesicle3Force(s->vesicle[v], x + v * s->unknowns, s->work.F + v * s->size));
     for (PetscInt k = 0; k < s->size; k++) s->work.V[v * s->size + k] = x[v * s->unknowns + k] / s->vesicle[v]->a0;
   }
-  if (s->cross) PetscCall(CrossLayerAddStiffness(s->cross, s->work.V, s->work.F));
+  if (s->cross) PetscCall(CrossLayerAddContact(s->cross, PETSC_FALSE, s->work.V, s->work.F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,16 +146,15 @@ PetscErrorCode SpaceSolverDestroy(Space s) {
 /* Factors of the vesicles where they are placed; report.failure when one is singular. */
 static PetscErrorCode SpaceMakeFactors(Space s) {
   const PetscInt n = s->size + s->count;
-  int good = 1;
+  PetscBool singular = PETSC_FALSE;
   PetscFunctionBeginUser;
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscBool factored;
     PetscCall(Vesicle3Matrix(s->vesicle[v], s->made.matrix + v * n * n));
     PetscCall(DenseFactor(n, s->made.matrix + v * n * n, s->made.pivot + v * n, &factored));
-    if (!factored) good = 0;
+    if (!factored) singular = PETSC_TRUE;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
-  if (!good) PetscCall(PetscStrncpy(s->report.failure, "the problem of a vesicle is singular", PETVES_MAX_MESSAGE));
+  PetscCall(SpaceFailWhere(s, singular, "the problem of a vesicle is singular"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,7 +165,7 @@ static PetscErrorCode SpaceRenewFactors(Space s, PetscReal a0) {
   PetscCall(SpaceMakeFactors(s));
   AgeRenew(&s->age, a0);
   s->made.a0 = a0;
-  PetscCall(PetscArraycpy(s->made.X, s->work.Xstar, s->share.own * s->size));
+  PetscCall(PetscArraycpy(s->made.X, s->work.star.X, s->share.own * s->size));
   PetscCall(PetscArraycpy(s->made.sigma, s->state.sigma, s->share.own * s->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -175,42 +173,26 @@ static PetscErrorCode SpaceRenewFactors(Space s, PetscReal a0) {
 PetscErrorCode SpaceRecall(Space s) {
   PetscFunctionBeginUser;
   if (s->made.a0 <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpacePlace(s, s->made.X, s->made.sigma));
   for (PetscInt v = 0; v < s->share.own; v++) {
     const PetscReal *X = s->made.X + v * s->size;
-    PetscCall(Vesicle3Place(s->vesicle[v], X, s->made.sigma + v * s->count));
     PetscCall(Vesicle3Linearise(s->vesicle[v], s->made.a0, X, X, X));
-  }
-  if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->made.X));
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    PetscBool done;
-    PetscCall(Vesicle3Factor(s->vesicle[v], &done));
   }
   PetscCall(SpaceMakeFactors(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SpaceGuess(Space s, const BDF *b) {
-  const PetscReal *sigma[BDF_MOST] = {s->state.sigma}, *U[BDF_MOST] = {s->state.U};
+PetscErrorCode SpaceGuess(Space s, PetscReal a0) {
   const PetscInt pair = s->size + s->count;
   PetscScalar *x;
   PetscFunctionBeginUser;
-  for (int j = 1; j < BDF_MOST; j++) {
-    sigma[j] = s->old[j - 1].sigma;
-    U[j] = s->old[j - 1].U;
-  }
   PetscCall(VecGetArrayWrite(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscScalar *Q = x + v * s->unknowns;
     for (PetscInt k = 0; k < s->size; k++)
-      Q[k] = b->a0 * (s->work.Xstar[v * s->size + k] - s->work.Xhat[v * s->size + k]);
-    for (PetscInt k = 0; k < s->count; k++) {
-      Q[s->size + k] = 0;
-      for (PetscInt j = 0; j < b->order; j++) Q[s->size + k] += b->star[j] * sigma[j][v * s->count + k];
-    }
-    for (PetscInt k = 0; k < s->unknowns - pair; k++) {
-      Q[pair + k] = 0;
-      for (PetscInt j = 0; j < b->order; j++) Q[pair + k] += b->star[j] * U[j][v * s->size + k];
-    }
+      Q[k] = a0 * (s->work.star.X[v * s->size + k] - s->work.Xhat[v * s->size + k]);
+    PetscCall(PetscArraycpy(Q + s->size, s->work.star.sigma + v * s->count, s->count));
+    PetscCall(PetscArraycpy(Q + pair, s->work.star.U + v * s->size, s->unknowns - pair));
   }
   PetscCall(VecRestoreArrayWrite(s->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -254,7 +236,7 @@ static PetscErrorCode SpaceRightHandSide(Space s) {
     const PetscInt at = v * s->size;
     const PetscReal *U = s->state.solved ? s->state.U + at : NULL;
     PetscScalar *b = all + v * s->unknowns;
-    PetscCall(Vesicle3Target(s->vesicle[v], s->work.Xhat + at, s->work.Xstar + at, U, b));
+    PetscCall(Vesicle3Target(s->vesicle[v], s->work.Xhat + at, s->work.star.X + at, U, b));
     if (SpaceSolvesVelocities(s)) {
       PetscCall(PetscArraycpy(b + n, s->work.V + at, s->size));
       continue;

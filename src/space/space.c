@@ -1,4 +1,5 @@
 #include "space/space.h"
+#include "base/agree.h"
 
 #define SMALLEST 1e-6 /* of the first step: smaller ones, which follow a lost shape, end the run */
 #define LOST 0.1      /* error of the area or the volume, over it, from which on a shape is lost */
@@ -6,16 +7,16 @@
 #define SMOOTH 0.7    /* least gain of a prediction by three states over that by two for order 3 */
 #define PARTS 7       /* of the first step: dt/64, dt/64, dt/32, .., dt/2 */
 
-static PetscErrorCode SpaceStateCreate(Space s, SpaceState *q) {
-  PetscFunctionBeginUser;
-  PetscCall(
-      PetscCalloc3(s->share.own * s->size, &q->X, s->share.own * s->size, &q->U, s->share.own * s->count, &q->sigma));
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* Numbers of a state. */
+static PetscInt SpaceStateSize(Space s) {
+  return s->share.own * (2 * s->size + s->count);
 }
 
-static PetscErrorCode SpaceStateDestroy(SpaceState *q) {
+static PetscErrorCode SpaceStateCreate(Space s, SpaceState *q) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(q->X, q->U, q->sigma));
+  PetscCall(PetscCalloc1(SpaceStateSize(s), &q->X));
+  q->U = q->X + s->share.own * s->size;
+  q->sigma = q->U + s->share.own * s->size;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,10 +44,11 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
         Vesicle3Create(s->sphere, &material[s->share.first + v], X + (s->share.first + v) * s->size, &s->vesicle[v]));
   PetscCall(SpaceStateCreate(s, &s->state));
   PetscCall(SpaceStateCreate(s, &s->start));
+  PetscCall(SpaceStateCreate(s, &s->work.star));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateCreate(s, &s->old[j]));
   const PetscInt n = s->share.own * s->size;
-  PetscCall(PetscMalloc7(n, &s->work.Xstar, n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n,
-                         &s->work.V, n, &s->work.U));
+  PetscCall(PetscMalloc6(n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n, &s->work.V, n,
+                         &s->work.U));
   PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
@@ -73,10 +75,11 @@ PetscErrorCode SpaceDestroy(Space *space) {
   PetscCall(PetscFree(s->tube.flow));
   for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3Destroy(&s->vesicle[v]));
   PetscCall(PetscFree(s->vesicle));
-  PetscCall(SpaceStateDestroy(&s->state));
-  PetscCall(SpaceStateDestroy(&s->start));
-  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateDestroy(&s->old[j]));
-  PetscCall(PetscFree7(s->work.Xstar, s->work.Xhat, s->work.Y, s->work.background, s->work.F, s->work.V, s->work.U));
+  PetscCall(PetscFree(s->state.X));
+  PetscCall(PetscFree(s->start.X));
+  PetscCall(PetscFree(s->work.star.X));
+  for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(PetscFree(s->old[j].X));
+  PetscCall(PetscFree6(s->work.Xhat, s->work.Y, s->work.background, s->work.F, s->work.V, s->work.U));
   PetscCall(SphereDestroy(&s->sphere));
   PetscCall(PetscFree(*space));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,57 +121,73 @@ static PetscErrorCode SpaceChooseOrder(Space s, PetscReal dt) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* X*, Xhat; surfaces and u_inf at X* at time t. */
-static PetscErrorCode SpacePlace(Space s, const BDF *b, PetscReal t) {
+/* The extrapolated state, and Xhat. */
+static void SpaceExtrapolate(Space s, const BDF *b) {
   const PetscReal *X[BDF_MOST] = {s->state.X};
-  int good = 1, finite = 1;
-  PetscFunctionBeginUser;
   for (int j = 1; j < BDF_MOST; j++) X[j] = s->old[j - 1].X;
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) {
-    s->work.Xstar[k] = s->work.Xhat[k] = 0;
-    for (PetscInt j = 0; j < b->order; j++) {
-      s->work.Xstar[k] += b->star[j] * X[j][k];
-      s->work.Xhat[k] += b->history[j] / b->a0 * X[j][k];
-    }
+  (void)PetscArrayzero(s->work.star.X, SpaceStateSize(s));
+  (void)PetscArrayzero(s->work.Xhat, s->share.own * s->size);
+  for (PetscInt j = 0; j < b->order; j++) {
+    for (PetscInt k = 0; k < SpaceStateSize(s); k++) s->work.star.X[k] += b->star[j] * X[j][k];
+    for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.Xhat[k] += b->history[j] / b->a0 * X[j][k];
   }
-  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->work.Xstar));
-  if (s->cross && s->cross->gap <= 0) {
-    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
-                            "vesicles %" PetscInt_FMT " and %" PetscInt_FMT " overlap by %g", s->cross->nearest[0] + 1,
-                            s->cross->nearest[1] + 1, (double)-s->cross->gap));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt v = 0; v < s->share.own; v++) {
-    const Vesicle3 vesicle = s->vesicle[v];
-    PetscReal *u;
-    PetscCall(Vesicle3Place(vesicle, s->work.Xstar + v * s->size, s->state.sigma + v * s->count));
-    PetscCall(PetscMalloc1(3 * vesicle->at->n, &u));
-    PetscCall(s->setting.flow(s->setting.context, t, vesicle->at->n, vesicle->at->D[HARMONIC], u));
-    PetscCall(SphereFieldProject(&s->sphere->fine, u, s->work.background + v * s->size));
-    for (PetscInt k = 0; k < s->size; k++)
-      if (PetscIsInfOrNanReal(s->work.background[v * s->size + k])) finite = 0;
-    PetscCall(PetscFree(u));
-  }
-  if (s->tube.tube) PetscCall(SpacePlaceTube(s, s->work.Xstar));
-  if (s->tube.tube && s->tube.film < s->tube.least)
-    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
-                            "the film between a vesicle and the tube is %.3g, least is %.3g", (double)s->tube.film,
-                            (double)s->tube.least));
-  for (PetscInt k = 0; k < s->share.own * s->size && s->tube.throat; k++)
-    s->work.background[k] += s->setting.tube.mean * s->tube.flow[k];
+}
+
+PetscErrorCode SpaceFailWhere(Space s, PetscBool bad, const char why[]) {
+  PetscBool any;
+  PetscFunctionBeginUser;
+  PetscCall(AgreeFlag(s->share.comm, bad, &any));
+  if (any) PetscCall(PetscStrncpy(s->report.failure, why, PETVES_MAX_MESSAGE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SpacePlace(Space s, const PetscReal X[], const PetscReal sigma[]) {
+  PetscBool singular = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->share.own; v++)
+    PetscCall(Vesicle3Place(s->vesicle[v], X + v * s->size, sigma + v * s->count));
+  if (s->tube.tube) PetscCall(SpacePlaceTube(s, X));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscBool done;
     PetscCall(Vesicle3Factor(s->vesicle[v], &done));
-    if (done)
-      PetscCall(Vesicle3Velocity(s->vesicle[v], 1, s->work.background + v * s->size));
-    else
-      good = 0;
+    if (!done) singular = PETSC_TRUE;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, s->share.comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, s->share.comm));
-  if (!finite) PetscCall(PetscStrncpy(s->report.failure, "the background flow is not finite", PETVES_MAX_MESSAGE));
-  if (!good)
-    PetscCall(PetscStrncpy(s->report.failure, "the double layer of a vesicle is singular", PETVES_MAX_MESSAGE));
+  PetscCall(SpaceFailWhere(s, singular, "the double layer of a vesicle is singular"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* K^-1 u_inf at time t of the vesicles where they have been placed. */
+static PetscErrorCode SpaceFindBackground(Space s, PetscReal t) {
+  PetscBool lost = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    const Surface at = s->vesicle[v]->at;
+    PetscReal *u, *background = s->work.background + v * s->size;
+    PetscCall(PetscMalloc1(3 * at->n, &u));
+    PetscCall(s->setting.flow(s->setting.context, t, at->n, at->D[HARMONIC], u));
+    PetscCall(SphereFieldProject(&s->sphere->fine, u, background));
+    PetscCall(PetscFree(u));
+    for (PetscInt k = 0; k < s->size; k++) {
+      if (PetscIsInfOrNanReal(background[k])) lost = PETSC_TRUE;
+      if (s->tube.throat) background[k] += s->setting.tube.mean * s->tube.flow[v * s->size + k];
+    }
+    PetscCall(Vesicle3Velocity(s->vesicle[v], 1, background));
+  }
+  PetscCall(SpaceFailWhere(s, lost, "the background flow is not finite"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Everything at X* for a step that ends at time t. */
+static PetscErrorCode SpacePrepare(Space s, const BDF *b, PetscReal t) {
+  PetscFunctionBeginUser;
+  SpaceExtrapolate(s, b);
+  if (s->cross) PetscCall(CrossLayerPlace(s->cross, s->work.star.X));
+  if (s->cross && s->cross->gap <= 0)
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
+                            "vesicles %" PetscInt_FMT " and %" PetscInt_FMT " overlap by %g", s->cross->nearest[0] + 1,
+                            s->cross->nearest[1] + 1, (double)-s->cross->gap));
+  if (!*s->report.failure) PetscCall(SpacePlace(s, s->work.star.X, s->state.sigma));
+  if (!*s->report.failure) PetscCall(SpaceFindBackground(s, t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,12 +196,11 @@ static PetscErrorCode SpaceAddContact(Space s) {
   PetscReal *change = s->work.V, *G = s->work.F;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->share.own * s->size; k++) {
-    change[k] = s->work.Xhat[k] - s->work.Xstar[k];
+    change[k] = s->work.Xhat[k] - s->work.star.X[k];
     G[k] = 0;
   }
-  PetscCall(CrossLayerAddRepulsion(s->cross, G));
-  PetscCall(CrossLayerAddStiffness(s->cross, change, G));
-  for (PetscInt v = 0; v < s->share.own; v++) PetscCall(Vesicle3AddKnown(s->vesicle[v], G + v * s->size));
+  PetscCall(CrossLayerAddContact(s->cross, PETSC_TRUE, change, G));
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->vesicle[k / s->size]->known[k % s->size] += G[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -208,14 +226,14 @@ static PetscErrorCode SpaceAttempt(Space s, PetscReal dt) {
   const BDF b = SpaceFormula(s, dt);
   PetscReal moved;
   PetscFunctionBeginUser;
-  PetscCall(SpacePlace(s, &b, s->state.t + dt));
+  PetscCall(SpacePrepare(s, &b, s->state.t + dt));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SpaceGuess(s, &b));
-  PetscCall(PetscArraycpy(s->work.Y, s->work.Xstar, s->share.own * s->size));
+  PetscCall(SpaceGuess(s, b.a0));
+  PetscCall(PetscArraycpy(s->work.Y, s->work.star.X, s->share.own * s->size));
   for (PetscInt pass = 0; pass < s->setting.newton && !*s->report.failure; pass++) {
     for (PetscInt v = 0; v < s->share.own; v++) {
       const PetscInt at = v * s->size;
-      PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->work.Xhat + at, s->work.Xstar + at, s->work.Y + at));
+      PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->work.Xhat + at, s->work.star.X + at, s->work.Y + at));
     }
     if (s->cross) PetscCall(SpaceAddContact(s));
     PetscCall(SpaceSolve(s, pass));
@@ -276,15 +294,13 @@ PetscErrorCode SpaceStart(Space s) {
 }
 
 static PetscErrorCode SpaceStateCopy(Space s, const SpaceState *from, SpaceState *to) {
-  SpaceState copy = *from;
+  const SpaceState room = *to;
   PetscFunctionBeginUser;
-  copy.X = to->X;
-  copy.U = to->U;
-  copy.sigma = to->sigma;
-  PetscCall(PetscArraycpy(copy.X, from->X, s->share.own * s->size));
-  PetscCall(PetscArraycpy(copy.U, from->U, s->share.own * s->size));
-  PetscCall(PetscArraycpy(copy.sigma, from->sigma, s->share.own * s->count));
-  *to = copy;
+  *to = *from;
+  to->X = room.X;
+  to->U = room.U;
+  to->sigma = room.sigma;
+  PetscCall(PetscArraycpy(to->X, from->X, SpaceStateSize(s)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

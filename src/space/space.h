@@ -43,7 +43,7 @@ typedef struct {
   char failure[PETVES_MAX_MESSAGE]; /* why the step was not taken; empty: it was taken */
 } SpaceReport;
 
-/* States are arrays of the own vesicles. */
+/* States are arrays of the own vesicles, one behind the other. */
 typedef struct {
   PetscInt step;
   PetscReal t, dt_last; /* dt_last: the step, or its last part, that led to it; 0 at the start */
@@ -52,10 +52,11 @@ typedef struct {
   PetscReal *sigma;     /* [own][count] */
 } SpaceState;
 
-/* Arrays [own][size] of the step under way: X*, Xhat, the iterate Y, K^-1 u_inf at X*, forces and velocities,
-   velocities that are unknowns. */
+/* The step under way: the extrapolated state, which has X*, and arrays [own][size], Xhat, the iterate Y, K^-1 u_inf at
+   X*, forces and velocities, velocities that are unknowns. */
 typedef struct {
-  PetscReal *Xstar, *Xhat, *Y, *background, *F, *V, *U;
+  SpaceState star;
+  PetscReal *Xhat, *Y, *background, *F, *V, *U;
 } SpaceWork;
 
 /* The factors of the own vesicles' problems, and what they were made for: X* [own][size], the tension that pulled
@@ -122,35 +123,19 @@ PETSC_EXTERN PetscErrorCode SpaceStart(Space space);
    Collective. */
 PETSC_EXTERN PetscErrorCode SpaceStep(Space space, PetscReal until);
 
-/* What a checkpoint has of a space: its numbers, and arrays of the own vesicles, `each` numbers a vesicle. */
-typedef struct {
-  PetscInt step, past, order, solved, level;
-  PetscReal t, dt_last[BDF_MOST]; /* of the present state and those before it */
-  PetscReal made;                 /* a0 of the factors */
-  PetscReal age[AGE_MEMORY];
-} SpaceNumbers;
-typedef struct {
-  char name[32];
-  PetscInt each;
-  PetscReal *own;
-} SpaceArray;
-#define SPACE_ARRAYS (3 * BDF_MOST + 2)
-
-/* SpaceGetNumbers, SpaceSetNumbers - of the present state (spacememory.c). SpaceArrays - the arrays
-   that go with the numbers, and how many there are. Not collective. */
-PETSC_EXTERN SpaceNumbers SpaceGetNumbers(Space space);
-PETSC_EXTERN void SpaceSetNumbers(Space space, const SpaceNumbers *numbers);
-PETSC_EXTERN PetscInt SpaceArrays(Space space, SpaceArray array[SPACE_ARRAYS]);
-
-/* SpaceRecall - the factors of a run that goes on, made again for what they were made for, space->made. Collective. */
+/* SpacePlace - the vesicles' parts of the problem at the shapes X[own][size], which the tensions sigma[own][count]
+   pull, tube included. SpaceRecall - the factors of a run that goes on, made again for what they were made for,
+   space->made. SpaceFailWhere - the step fails for a reason, where `bad` on any rank. Collective. */
+PETSC_EXTERN PetscErrorCode SpacePlace(Space space, const PetscReal X[], const PetscReal sigma[]);
 PETSC_EXTERN PetscErrorCode SpaceRecall(Space space);
+PETSC_EXTERN PetscErrorCode SpaceFailWhere(Space space, PetscBool bad, const char why[]);
 
 /* SpaceMobility - V[own][size] = K^-1 [(S + S_o) F + D_o (1 - ratio) U] of all vesicles where they have been placed,
    the second part where velocities are unknowns. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceMobility(Space space, const PetscReal F[], const PetscReal U[], PetscReal V[]);
 
 /* The tube (spacetube.c). SpacePlaceTube - the film, and what the tube adds to the vesicles' own S and K, of vesicles
-   that have been placed at X[own][size]. Nothing is added where the film is thinner than the least. SpaceMeasureFilm -
+   that have been placed at X[own][size]. Where the film is thinner than the least the step fails. SpaceMeasureFilm -
    the film of X, where the surfaces are placed, the least one and the spacing. SpaceAddTube - V[own][size] += what the
    tube makes of the forces F[own][size] on other vesicles, or of their velocities F in its part of the double layer.
    SpaceMeasureThrust - of the membranes' forces, minus work.F, and velocities work.V. Collective. */
@@ -159,10 +144,9 @@ PETSC_EXTERN PetscErrorCode SpaceMeasureFilm(Space space, const PetscReal X[], P
 PETSC_EXTERN PetscErrorCode SpaceAddTube(Space space, NearKernel kernel, const PetscReal F[], PetscReal V[]);
 PETSC_EXTERN PetscErrorCode SpaceMeasureThrust(Space space);
 
-/* SpaceGuess - a first guess of x for the formula b: Q that leads to X*, the tension of the last states extrapolated,
-   the last U. SpaceIterate - Y = Xhat + Q/a0 of x; moved: the largest root mean square of its change, over the radius.
-   Collective. */
-PETSC_EXTERN PetscErrorCode SpaceGuess(Space space, const BDF *b);
+/* SpaceGuess - a first guess of x: Q that leads to X*, extrapolated tension and U. SpaceIterate - Y = Xhat + Q/a0 of x;
+   moved: the largest root mean square of its change, over the radius. Collective. */
+PETSC_EXTERN PetscErrorCode SpaceGuess(Space space, PetscReal a0);
 PETSC_EXTERN PetscErrorCode SpaceIterate(Space space, PetscReal a0, PetscReal *moved);
 
 /* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as

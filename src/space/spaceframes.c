@@ -85,14 +85,14 @@ PetscErrorCode SpaceSeries(void *model, AppendedKind *kind) {
 /* whole[vesicles][fields][HarmonicsCount(p)]: coefficients on whole spheres, on every rank. */
 static PetscErrorCode SpaceGatherWhole(Space s, ModelPart part, PetscReal whole[]) {
   const PetscReal *const own[MODEL_PARTS] = {s->state.X, s->state.U, s->state.sigma};
-  const PetscInt each = part == MODEL_TENSION ? s->count : s->size, apart = part == MODEL_TENSION ? 1 : 3;
+  const PetscInt each = part == MODEL_TENSION ? s->count : s->size;
+  const int components = part == MODEL_TENSION ? 1 : 3;
   PetscReal *all;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->share.vesicles * each, &all));
   PetscCall(ShareGather(&s->share, each, own[part], all));
   for (PetscInt v = 0; v < s->share.vesicles; v++)
-    (part == MODEL_TENSION ? SphereUnfoldScalar : SphereUnfold)(s->sphere, all + v * each,
-                                                                whole + v * apart * HarmonicsCount(s->sphere->p));
+    SphereUnfold(s->sphere, components, all + v * each, whole + v * components * HarmonicsCount(s->sphere->p));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -148,58 +148,72 @@ static const char *SpaceWarning(const void *model, PetscInt i) {
   return NULL;
 }
 
-/* Write or read whole numbers and times; a run has had those that are read. */
+/* Write or read the numbers of the run. */
 static PetscErrorCode SpaceMoveNumbers(SpaceModel m, H5File *file, PetscBool write, PetscInt *frames) {
-  SpaceNumbers n = SpaceGetNumbers(m->space);
-  PetscInt whole[] = {n.step, n.past, n.order, n.solved, *frames, m->its, n.level};
-  PetscReal real[2 + BDF_MOST + AGE_MEMORY] = {n.t, n.made};
-  const PetscInt reals = 2 + BDF_MOST + AGE_MEMORY;
+  const Space s = m->space;
+  PetscInt solved = s->state.solved;
+  PetscReal dt_last[BDF_MOST] = {s->state.dt_last}, age[AGE_MEMORY];
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(real + 2, n.dt_last, BDF_MOST));
-  PetscCall(PetscArraycpy(real + 2 + BDF_MOST, n.age, AGE_MEMORY));
-  const CheckpointNumber all[] = {{"numbers", 0, 0, whole, NULL, 7}, {"times", 0, 0, NULL, real, reals}};
-  PetscCall(CheckpointMoveNumbers(file, write, 2, all));
-  if (write) PetscFunctionReturn(PETSC_SUCCESS);
-  if (whole[0] < 0 || whole[1] < 0 || whole[1] >= BDF_MOST || whole[2] < 1 || whole[2] > BDF_MOST || whole[4] < 0)
-    real[0] = NAN;
-  CheckpointFinite(file, reals, real);
-  PetscCall(RestartEntries(m->scene, file));
-  n = (SpaceNumbers){.step = whole[0],
-                     .past = whole[1],
-                     .order = whole[2],
-                     .solved = whole[3],
-                     .level = whole[6],
-                     .t = real[0],
-                     .made = real[1]};
-  PetscCall(PetscArraycpy(n.dt_last, real + 2, BDF_MOST));
-  PetscCall(PetscArraycpy(n.age, real + 2 + BDF_MOST, AGE_MEMORY));
-  SpaceSetNumbers(m->space, &n);
-  *frames = whole[4];
-  m->its = whole[5];
+  for (int j = 1; j < BDF_MOST; j++) dt_last[j] = s->old[j - 1].dt_last;
+  AgeGetMemory(&s->age, age);
+  const CheckpointNumber all[] = {{"step", 0, 1e9, &s->state.step},
+                                  {"past", 0, BDF_MOST - 1, &s->past},
+                                  {"step_order", 1, BDF_MOST, &s->order},
+                                  {"step_level", -1000, 1000, &s->plan.level},
+                                  {"solved", 0, 1, &solved},
+                                  {"frames", 0, 1e9, frames},
+                                  {"totals", 0, 0, &m->its},
+                                  {"time", 0, 1e300, NULL, &s->state.t},
+                                  {"factors_a0", 0, 1e300, NULL, &s->made.a0},
+                                  {"dt_last", 0, 0, NULL, dt_last, BDF_MOST},
+                                  {"factors_age", 0, 0, NULL, age, AGE_MEMORY}};
+  PetscCall(CheckpointMoveNumbers(file, write, sizeof(all) / sizeof(all[0]), all));
+  CheckpointFinite(file, BDF_MOST, dt_last);
+  CheckpointFinite(file, AGE_MEMORY, age);
+  s->state.solved = (PetscBool)solved;
+  s->state.dt_last = dt_last[0];
+  for (int j = 1; j < BDF_MOST; j++) s->old[j - 1].dt_last = dt_last[j];
+  s->age = AgeSetMemory(age);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers and the arrays [vesicles][each] of all ranks. */
+/* Write or read the first `arrays` arrays of a state in a group, [vesicles][each] of all ranks. */
+static PetscErrorCode SpaceMoveState(Space s, H5File *file, PetscBool write, const char group[], int arrays,
+                                     const SpaceState *q) {
+  const struct {
+    const char *name;
+    PetscInt each;
+    PetscReal *own;
+  } all[] = {{"shape", s->size, q->X}, {"tension", s->count, q->sigma}, {"velocity", s->size, q->U}};
+  PetscFunctionBeginUser;
+  for (int k = 0; k < arrays; k++) {
+    const PetscInt each = all[k].each, n = s->share.vesicles * each;
+    PetscReal *values;
+    char name[32];
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/vesicle/%s", group, all[k].name));
+    PetscCall(PetscCalloc1(n, &values));
+    if (write) PetscCall(ShareGather(&s->share, each, all[k].own, values));
+    PetscCall(CheckpointEntry(file, write, name, s->share.vesicles, each, values));
+    CheckpointFinite(file, n, values);
+    if (!write) PetscCall(PetscArraycpy(all[k].own, values + s->share.first * each, s->share.own * each));
+    PetscCall(PetscFree(values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SpaceCheckpoint(void *model, H5File *file, PetscBool write, PetscInt *frames) {
+  static const char *const groups[BDF_MOST] = {"", "/previous", "/previous_1"};
   const SpaceModel m = model;
-  const VesicleShare *share = &m->space->share;
-  SpaceArray array[SPACE_ARRAYS];
+  const Space s = m->space;
   PetscFunctionBeginUser;
   PetscCall(SpaceMoveNumbers(m, file, write, frames));
-  const PetscInt arrays = SpaceArrays(m->space, array);
-  for (PetscInt k = 0; k < arrays; k++) {
-    const PetscInt n = share->vesicles * array[k].each;
-    PetscReal *all;
-    PetscCall(PetscCalloc1(n, &all));
-    if (write) PetscCall(ShareGather(share, array[k].each, array[k].own, all));
-    PetscCall(CheckpointEntry(file, write, array[k].name, share->vesicles, array[k].each, all));
-    if (!write) PetscCall(ShareScatter(share, array[k].each, all, array[k].own));
-    CheckpointFinite(file, n, all);
-    PetscCall(PetscFree(all));
-  }
+  for (PetscInt j = 0; j <= s->past; j++)
+    PetscCall(SpaceMoveState(s, file, write, groups[j], 3, j ? &s->old[j - 1] : &s->state));
+  if (s->made.a0 > 0)
+    PetscCall(SpaceMoveState(s, file, write, "/solver", 2, &(SpaceState){.X = s->made.X, .sigma = s->made.sigma}));
   if (write) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RestartEntries(m->scene, file));
-  PetscCall(SpaceRecall(m->space));
+  PetscCall(SpaceRecall(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

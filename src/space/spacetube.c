@@ -1,4 +1,5 @@
 /* A tube about the vesicles of a space: what they have of its wall, and what is measured of it. */
+#include "numerics/blas.h"
 #include "space/space.h"
 
 /* The extent of all vesicles where their surfaces `at` have been placed. */
@@ -44,7 +45,12 @@ PetscErrorCode SpacePlaceTube(Space s, const PetscReal X[]) {
   TubeExtent extent;
   PetscFunctionBeginUser;
   PetscCall(SpaceTubeExtent(s, &extent));
-  if (s->tube.film < s->tube.least) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->tube.film < s->tube.least) {
+    PetscCall(PetscSNPrintf(s->report.failure, PETVES_MAX_MESSAGE,
+                            "the film between a vesicle and the tube is %.3g, least is %.3g", (double)s->tube.film,
+                            (double)s->tube.least));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (s->tube.throat)
     PetscCall(SpacePlaceThroat(s, &extent));
   else
@@ -72,13 +78,13 @@ PetscErrorCode SpaceAddTube(Space s, NearKernel kernel, const PetscReal F[], Pet
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(rows, &n));
   PetscCall(PetscCalloc2(rows, &all, rows, &others));
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(TubeRows(tube, s->size, factor + v * each, sign, F + v * s->size, all));
+  PetscCall(DenseMultAdd(PETSC_FALSE, rows, s->share.own * s->size, 1, factor, F, all));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, n, MPIU_REAL, MPI_SUM, s->share.comm));
   for (PetscInt v = 0; v < s->share.own; v++) {
     PetscCall(PetscArraycpy(others, all, rows));
-    PetscCall(TubeRows(tube, s->size, factor + v * each, -sign, F + v * s->size, others));
-    PetscCall(TubeAddRows(tube, s->size, s->tube.wall + v * each, others, V + v * s->size));
+    PetscCall(DenseMultAdd(PETSC_FALSE, rows, s->size, -1, factor + v * each, F + v * s->size, others));
+    TubeSignRows(tube, rows, 1, sign, others, others);
+    PetscCall(DenseMultAdd(PETSC_TRUE, rows, s->size, 1, s->tube.wall + v * each, others, V + v * s->size));
   }
   PetscCall(PetscFree2(all, others));
   PetscFunctionReturn(PETSC_SUCCESS);

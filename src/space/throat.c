@@ -186,7 +186,7 @@ static PetscErrorCode ThroatMakeFactor(Throat t) {
   PetscCall(PetscMalloc3(2 * n * waves, &t->T, 4 * n * n, &t->L, 2 * n, &t->answer));
   PetscCall(PetscMalloc1(2 * n * waves, &own));
   TubeRings(t->tube, n, t->X, NULL, own);
-  TubeSignRows(t->tube, 2 * n, own, t->T);
+  TubeSignRows(t->tube, waves, 2 * n, 1, own, t->T);
   ThroatStokeslets(t, n, t->X, PETSC_TRUE, t->L);
   PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){t->T, waves, 2 * n, waves},
                                (DenseView){own, waves, 2 * n, waves}, 1, t->L, 2 * n));

@@ -257,43 +257,21 @@ PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sign of a row: the wall holds fluid back, and a given pressure drop lets it go. */
-static inline PetscReal TubeSign(Tube t, PetscInt row) {
-  return row == t->waves - 1 ? 1 : -1;
-}
-
-void TubeSignRows(Tube t, PetscInt columns, const PetscReal rows[], PetscReal signed_rows[]) {
-  const PetscInt waves = t->waves;
-  for (PetscInt k = 0; k < columns * waves; k++) signed_rows[k] = TubeSign(t, k % waves) * rows[k];
+void TubeSignRows(Tube t, PetscInt rows, PetscInt columns, PetscReal scale, const PetscReal a[],
+                  PetscReal signed_rows[]) {
+  for (PetscInt k = 0; k < columns * rows; k++) /* the wall holds fluid back, and a given pressure drop lets it go */
+    signed_rows[k] = k % rows == t->waves - 1 ? scale * a[k] : -scale * a[k];
 }
 
 PetscErrorCode TubeAddProduct(Tube t, PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal A[],
                               PetscReal M[]) {
   const PetscInt rows = TubeRowCount(t);
-  const DenseView factor = {T, rows, size, rows};
   PetscReal *with_sign;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(size * rows, &with_sign));
-  for (PetscInt k = 0; k < size * rows; k++) with_sign[k] = scale * TubeSign(t, k % rows) * A[k];
-  PetscCall(DenseProductWithin(PETSC_TRUE, factor, (DenseView){with_sign, rows, size, rows}, 1, M, size));
-  PetscCall(PetscFree(with_sign));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode TubeRows(Tube t, PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal F[],
-                        PetscReal row[]) {
-  PetscFunctionBeginUser;
-  PetscCall(DenseMultAdd(PETSC_FALSE, TubeRowCount(t), size, scale, T, F, row));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode TubeAddRows(Tube t, PetscInt size, const PetscReal T[], const PetscReal row[], PetscReal U[]) {
-  const PetscInt rows = TubeRowCount(t);
-  PetscReal *with_sign;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows, &with_sign));
-  for (PetscInt k = 0; k < rows; k++) with_sign[k] = TubeSign(t, k) * row[k];
-  PetscCall(DenseMultAdd(PETSC_TRUE, rows, size, 1, T, with_sign, U));
+  TubeSignRows(t, rows, size, scale, A, with_sign);
+  PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){T, rows, size, rows}, (DenseView){with_sign, rows, size, rows},
+                               1, M, size));
   PetscCall(PetscFree(with_sign));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -81,10 +81,11 @@ static inline PetscInt TubeRowCount(Tube tube) {
 
 /* TubeRings - rings[2n][waves]: the columns of T of forces 1 along x on n rings X[2][n], x and r, then of those along
    r; where normals[2][n] are given (NULL: not), of velocities there by the tractions over the viscosity. TubeSignRows -
-   signed_rows[columns][waves] = S rows[columns][waves]. TubeProject - T[size][apart], rows numbers each, of a body, by
-   those of its rings, rings[2n][rows]. Not collective. Errors: memory. */
+   signed_rows[columns][rows] = scale S a[columns][rows], which may be one array. TubeProject - T[size][apart], rows
+   numbers each, of a body, by those of its rings, rings[2n][rows]. Not collective. Errors: memory. */
 PETSC_EXTERN void TubeRings(Tube tube, PetscInt n, const PetscReal X[], const PetscReal normals[], PetscReal rings[]);
-PETSC_EXTERN void TubeSignRows(Tube tube, PetscInt columns, const PetscReal rows[], PetscReal signed_rows[]);
+PETSC_EXTERN void TubeSignRows(Tube tube, PetscInt rows, PetscInt columns, PetscReal scale, const PetscReal a[],
+                               PetscReal signed_rows[]);
 PETSC_EXTERN PetscErrorCode TubeProject(Tube tube, PetscInt rows, const PetscReal rings[], PetscReal T[],
                                         PetscInt apart);
 
@@ -92,14 +93,9 @@ PETSC_EXTERN PetscErrorCode TubeProject(Tube tube, PetscInt rows, const PetscRea
    wanted). Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal T[], PetscReal Theta[]);
 
-/* TubeAddProduct - M[size][size] += scale T^T S A, A[size][rows]. TubeRows - row[rows] += scale T F[size].
-   TubeAddRows - U[size] += T^T S row. Not collective. */
+/* TubeAddProduct - M[size][size] += scale T^T S A, A[size][rows]. Not collective. */
 PETSC_EXTERN PetscErrorCode TubeAddProduct(Tube tube, PetscInt size, const PetscReal T[], PetscReal scale,
                                            const PetscReal A[], PetscReal M[]);
-PETSC_EXTERN PetscErrorCode TubeRows(Tube tube, PetscInt size, const PetscReal T[], PetscReal scale,
-                                     const PetscReal F[], PetscReal row[]);
-PETSC_EXTERN PetscErrorCode TubeAddRows(Tube tube, PetscInt size, const PetscReal T[], const PetscReal row[],
-                                        PetscReal U[]);
 
 /* TubeThrust - F . u_1 + (1 - ratio) INT tau_1 . U dA of forces F[size] on the fluid and velocities U[size] of a body
    of revolution where it has been placed, tau_1 the traction of u_1, ratio that of the viscosity inside to that of the

@@ -20,7 +20,8 @@ PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting *setting, con
   PetscCall(SurfacePlace(v->at, X, PETSC_FALSE));
   v->area = v->at->area;
   v->volume = v->at->volume;
-  PetscCall(PetscMalloc3(size * size, &v->S, n * size, &v->rows, n * size, &v->columns));
+  v->motions = sphere->symmetry == SPHERE_REVOLVED ? 1 : 6;
+  PetscCall(PetscMalloc4(size * size, &v->S, size * size, &v->N, n * size, &v->columns, 6 * size, &v->motion));
   PetscCall(PetscCalloc3(size * size, &v->pull, size, &v->clean, size, &v->known));
   if (setting->ratio != 1) PetscCall(PetscMalloc2(size * size, &v->K, size, &v->pivot));
   for (PetscInt k = 0; k < size; k++)
@@ -34,7 +35,7 @@ PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle) {
   if (!v) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfaceDestroy(&v->at));
   PetscCall(SurfaceDestroy(&v->about));
-  PetscCall(PetscFree3(v->S, v->rows, v->columns));
+  PetscCall(PetscFree4(v->S, v->N, v->columns, v->motion));
   PetscCall(PetscFree3(v->pull, v->clean, v->known));
   PetscCall(PetscFree2(v->K, v->pivot));
   PetscCall(PetscFree(*vesicle));
@@ -60,24 +61,35 @@ PetscErrorCode Vesicle3Factor(Vesicle3 v, PetscBool *done) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The rigid motions, turns about the middle of the surface X*. */
+static void Vesicle3SetMotions(Vesicle3 v, const PetscReal Xstar[]) {
+  const Surface s = v->at;
+  const PetscReal one = PetscSqrtReal(4 * PETSC_PI); /* coefficient of the constant 1 */
+  (void)PetscArrayzero(v->middle, 3);
+  for (PetscInt i = 0; i < 3 * s->n; i++)
+    v->middle[i / s->n] += s->sphere->fine.grid.weight[i % s->n] * s->J[i % s->n] * s->D[HARMONIC][i] / s->area;
+  (void)PetscArrayzero(v->motion, v->motions * v->size);
+  for (PetscInt d = 0; d < PetscMin(3, v->motions); d++) v->motion[d * v->size + d * v->count] = one;
+  for (PetscInt turn = 3; turn < v->motions; turn++) {
+    const PetscInt e = (turn + 1) % 3, f = (turn + 2) % 3;
+    PetscReal *across = v->motion + turn * v->size + e * v->count, *along = v->motion + turn * v->size + f * v->count;
+    for (PetscInt k = 0; k < v->count; k++) {
+      across[k] = -Xstar[f * v->count + k];
+      along[k] = Xstar[e * v->count + k];
+    }
+    *across += one * v->middle[f];
+    *along -= one * v->middle[e];
+  }
+}
+
 PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscReal sigma[]) {
-  const PetscInt count = v->count, size = v->size;
-  PetscReal *N, *A;
   PetscFunctionBeginUser;
   PetscCall(SurfacePlace(v->at, Xstar, PETSC_TRUE));
   PetscCall(Vesicle3PlaceLayers(v, Xstar));
-  PetscCall(PetscMalloc2(size * size, &N, size * count, &A));
-  PetscCall(SurfaceNormals(v->at, N));
-  PetscCall(SurfaceAreaRows(v->at, A));
-  for (PetscInt l = 0; l < size; l++) {
-    for (PetscInt k = 0; k < size; k++) v->rows[v->unknowns * l + k] = -N[size * l + k];
-    for (PetscInt k = 0; k < count; k++) {
-      v->rows[v->unknowns * l + size + k] = -A[count * l + k];
-      v->columns[size * (size + k) + l] = A[count * l + k];
-    }
-  }
-  PetscCall(PetscFree2(N, A));
+  PetscCall(SurfaceNormals(v->at, v->N));
+  PetscCall(SurfaceAreaColumns(v->at, v->columns + v->size * v->size));
   PetscCall(SurfacePull(v->at, sigma, v->pull));
+  Vesicle3SetMotions(v, Xstar);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,12 +135,6 @@ PetscErrorCode Vesicle3Linearise(Vesicle3 v, PetscReal a0, const PetscReal Xhat[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Vesicle3AddKnown(Vesicle3 v, const PetscReal G[]) {
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < v->size; k++) v->known[k] += G[k];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode Vesicle3Force(Vesicle3 v, const PetscReal x[], PetscReal F[]) {
   PetscFunctionBeginUser;
   PetscCall(DenseProduct(PETSC_FALSE, v->size, 1, v->unknowns, v->columns, x, F));
@@ -141,18 +147,11 @@ PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscInt columns, PetscReal U[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y[size] += scale (1 - P_n) w. */
+/* y[size] += scale P_t w. */
 static PetscErrorCode Vesicle3AddTangential(Vesicle3 v, PetscReal scale, const PetscReal w[], PetscReal y[]) {
-  const DenseView minus_normals = {.a = v->rows, .rows = v->size, .columns = v->size, .apart = v->unknowns};
-  PetscReal *scaled;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(v->size, &scaled));
-  for (PetscInt k = 0; k < v->size; k++) {
-    scaled[k] = scale * w[k];
-    y[k] += scaled[k];
-  }
-  PetscCall(DenseProductWithin(PETSC_FALSE, minus_normals, (DenseView){scaled, v->size, 1, v->size}, 1, y, v->size));
-  PetscCall(PetscFree(scaled));
+  for (PetscInt k = 0; k < v->size; k++) y[k] += scale * w[k];
+  PetscCall(DenseMultAdd(PETSC_FALSE, v->size, v->size, -scale, v->N, w, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -162,105 +161,56 @@ static void Vesicle3CleanLabels(Vesicle3 v, const PetscReal x[], PetscReal y[]) 
 }
 
 PetscErrorCode Vesicle3Rows(Vesicle3 v, const PetscReal x[], const PetscReal U[], PetscReal y[]) {
+  const PetscInt size = v->size;
   PetscReal *cleaned;
   PetscFunctionBeginUser;
-  PetscCall(DenseProduct(PETSC_FALSE, v->unknowns, 1, v->size, v->rows, U, y));
+  PetscCall(PetscArrayzero(y, v->unknowns));
+  PetscCall(DenseMultAdd(PETSC_FALSE, size, size, -1, v->N, U, y));
+  PetscCall(DenseMultAdd(PETSC_TRUE, size, v->count, -1, v->columns + size * size, U, y + size));
   if (!x) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(v->size, &cleaned));
+  PetscCall(PetscMalloc1(size, &cleaned));
   Vesicle3CleanLabels(v, x, cleaned);
-  for (PetscInt k = 0; k < v->size; k++) y[k] += x[k];
+  for (PetscInt k = 0; k < size; k++) y[k] += x[k];
   PetscCall(Vesicle3AddTangential(v, 1 / v->a0, cleaned, y));
   PetscCall(PetscFree(cleaned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rigid motion q, translation and rotation about the middle X0 of the surface, whose normal part is nearest to that of
-   U in the mean square. Motions that hardly move the shape, as turns of a surface of revolution, are left out. */
-static PetscErrorCode Vesicle3FitRigid(Vesicle3 v, const PetscReal U[], PetscReal X0[3], PetscReal q[6]) {
+/* w[size], the rigid part of the velocity U: the motion whose normal part is nearest to that of U in the mean square.
+   Motions that hardly move the shape, as turns of a surface of revolution, are left out. */
+static PetscErrorCode Vesicle3RigidPart(Vesicle3 v, const PetscReal U[], PetscReal w[]) {
   const Surface s = v->at;
   const PetscInt n = s->n;
-  const PetscBool revolved = (PetscBool)(s->sphere->symmetry == SPHERE_REVOLVED);
-  PetscReal *u, D[36] = {0}, l[6], b[6] = {0};
+  PetscReal *u, *normal, *of_U, singular[6];
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * n, &u));
+  PetscCall(PetscMalloc3(3 * n, &u, 6 * n, &normal, n, &of_U));
   PetscCall(SphereFieldValues(&s->sphere->fine, HARMONIC, U, u));
-  for (int d = 0; d < 3; d++) {
-    X0[d] = 0;
-    for (PetscInt i = 0; i < n; i++)
-      X0[d] += s->sphere->fine.grid.weight[i] * s->J[i] * s->D[HARMONIC][d * n + i] / s->area;
-  }
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal dA = s->sphere->fine.grid.weight[i] * s->J[i];
-    PetscReal m[6], normal = 0;
+  for (PetscInt i = 0; i < n; i++) { /* normal parts of the motions, and of U */
+    const PetscReal root = PetscSqrtReal(s->sphere->fine.grid.weight[i] * s->J[i]);
+    of_U[i] = 0;
     for (int d = 0; d < 3; d++) {
-      const int e = (d + 1) % 3, f = (d + 2) % 3;
-      m[d] = s->normal[d * n + i];
-      m[3 + d] = (s->D[HARMONIC][e * n + i] - X0[e]) * s->normal[f * n + i] -
-                 (s->D[HARMONIC][f * n + i] - X0[f]) * s->normal[e * n + i];
-      normal += u[d * n + i] * s->normal[d * n + i];
-    }
-    for (int j = 1; j < 6 && revolved; j++) m[j] = 0; /* of the turns of a meridian */
-    for (int j = 0; j < 6; j++) {
-      b[j] += dA * m[j] * normal;
-      for (int k = 0; k < 6; k++) D[6 * j + k] += dA * m[j] * m[k];
+      const PetscInt e = (d + 1) % 3, f = (d + 2) % 3;
+      normal[d * n + i] = root * s->normal[d * n + i];
+      normal[(3 + d) * n + i] = root * ((s->D[HARMONIC][e * n + i] - v->middle[e]) * s->normal[f * n + i] -
+                                        (s->D[HARMONIC][f * n + i] - v->middle[f]) * s->normal[e * n + i]);
+      of_U[i] += root * u[d * n + i] * s->normal[d * n + i];
     }
   }
-  PetscCall(PetscFree(u));
-  PetscCall(DenseEigen(6, D, l));
-  (void)PetscArrayzero(q, 6);
-  for (int j = 0; j < 6; j++) {
-    PetscReal part = 0;
-    if (l[j] <= LEAST_MOTION * l[5]) continue;
-    for (int k = 0; k < 6; k++) part += D[6 * j + k] * b[k] / l[j];
-    for (int k = 0; k < 6; k++) q[k] += part * D[6 * j + k];
-  }
+  PetscCall(DenseLeastSquares(n, v->motions, normal, 1, of_U, PetscSqrtReal(LEAST_MOTION), singular));
+  PetscCall(DenseProduct(PETSC_FALSE, v->size, 1, v->motions, v->motion, of_U, w));
+  PetscCall(PetscFree3(u, normal, of_U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* w[size], the rigid part of the velocity U. */
-static PetscErrorCode Vesicle3RigidPart(Vesicle3 v, const PetscReal Xstar[], const PetscReal U[], PetscReal w[]) {
-  const PetscReal one = PetscSqrtReal(4 * PETSC_PI); /* coefficient of the constant 1 */
-  PetscReal X0[3], q[6];
+PetscErrorCode Vesicle3RemoveMotion(Vesicle3 v, PetscReal U[]) {
+  PetscReal *motion, *part, singular[6];
   PetscFunctionBeginUser;
-  PetscCall(Vesicle3FitRigid(v, U, X0, q));
-  if (v->at->sphere->symmetry == SPHERE_REVOLVED) { /* along the axis */
-    PetscCall(PetscArrayzero(w, v->size));
-    w[0] = one * q[0];
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (int d = 0; d < 3; d++) {
-    const int e = (d + 1) % 3, f = (d + 2) % 3;
-    for (PetscInt k = 0; k < v->count; k++)
-      w[d * v->count + k] = q[3 + e] * Xstar[f * v->count + k] - q[3 + f] * Xstar[e * v->count + k];
-    w[d * v->count] += one * (q[d] - q[3 + e] * X0[f] + q[3 + f] * X0[e]);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode Vesicle3RemoveMotion(Vesicle3 v, const PetscReal Xstar[], PetscReal U[]) {
-  const PetscInt count = v->count;
-  PetscReal G[9] = {0}, turn[3] = {0};
-  PetscBLASInt pivot[3];
-  PetscBool factored;
-  PetscFunctionBeginUser;
-  U[0] = 0; /* the harmonic of degree 0 is the translation */
-  if (v->at->sphere->symmetry == SPHERE_REVOLVED) PetscFunctionReturn(PETSC_SUCCESS);
-  U[count] = U[2 * count] = 0;
-  for (PetscInt k = 1; k < count; k++)
-    for (int d = 0; d < 3; d++) {
-      const PetscInt at = d * count + k, e = (d + 1) % 3 * count + k, f = (d + 2) % 3 * count + k;
-      turn[d] += Xstar[e] * U[f] - Xstar[f] * U[e];
-      G[4 * d] += PetscSqr(Xstar[e]) + PetscSqr(Xstar[f]);
-      G[3 * d + (d + 1) % 3] -= Xstar[at] * Xstar[e];
-      G[3 * d + (d + 2) % 3] -= Xstar[at] * Xstar[f];
-    }
-  PetscCall(DenseFactor(3, G, pivot, &factored));
-  PetscCall(DenseSolve(3, G, pivot, PETSC_FALSE, 1, turn));
-  for (PetscInt k = 1; k < count; k++)
-    for (int d = 0; d < 3; d++) {
-      const int e = (d + 1) % 3, f = (d + 2) % 3;
-      U[d * count + k] -= turn[e] * Xstar[f * count + k] - turn[f] * Xstar[e * count + k];
-    }
+  PetscCall(PetscMalloc2(v->motions * v->size, &motion, v->size, &part));
+  PetscCall(PetscArraycpy(motion, v->motion, v->motions * v->size));
+  PetscCall(PetscArraycpy(part, U, v->size));
+  PetscCall(DenseLeastSquares(v->size, v->motions, motion, 1, part, PETSC_MACHINE_EPSILON, singular));
+  PetscCall(DenseMultAdd(PETSC_FALSE, v->size, v->motions, -1, v->motion, part, U));
+  PetscCall(PetscFree2(motion, part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -272,7 +222,7 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
   PetscCall(PetscArrayzero(b, v->unknowns));
   Vesicle3CleanLabels(v, Xhat, w);
   PetscCall(Vesicle3AddTangential(v, -1, w, b));
-  if (U) PetscCall(Vesicle3RigidPart(v, Xstar, U, w));
+  if (U) PetscCall(Vesicle3RigidPart(v, U, w));
   if (U) PetscCall(Vesicle3AddTangential(v, 1, w, b));
   for (PetscInt k = 0; k < v->size; k++) grown += v->columns[v->size * v->size + k] * (Xhat[k] - Xstar[k]);
   b[v->size] = v->a0 * (grown - (v->area - v->at->area) / PetscSqrtReal(4 * PETSC_PI));
@@ -282,18 +232,19 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
 
 PetscErrorCode Vesicle3Matrix(Vesicle3 v, PetscReal B[]) {
   const PetscInt size = v->size, n = v->unknowns;
-  PetscReal *M, *LM, trace = 0;
+  const DenseView N = {v->N, size, size, size}, area = {v->columns + size * size, size, v->count, size};
+  PetscReal *M, *MC, trace = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(size * size, &M, n * size, &LM));
+  PetscCall(PetscMalloc2(size * size, &M, n * size, &MC));
   PetscCall(PetscArraycpy(M, v->S, size * size));
   PetscCall(Vesicle3Velocity(v, size, M));
-  PetscCall(DenseProduct(PETSC_FALSE, n, size, size, v->rows, M, LM));
-  PetscCall(DenseProduct(PETSC_FALSE, n, n, size, LM, v->columns, B));
-  PetscCall(PetscFree2(M, LM));
-  for (PetscInt k = 0; k < n * n; k++) B[k] = -B[k];
+  PetscCall(DenseProduct(PETSC_FALSE, size, n, size, M, v->columns, MC));
+  PetscCall(DenseProductWithin(PETSC_FALSE, N, (DenseView){MC, size, n, size}, 0, B, n));
+  PetscCall(DenseProductWithin(PETSC_TRUE, area, (DenseView){MC, size, n, size}, 0, B + size, n));
+  PetscCall(PetscFree2(M, MC));
   for (PetscInt l = 0; l < size; l++) {
     const PetscReal clean = v->clean[l] / v->a0;
-    for (PetscInt k = 0; k < size; k++) B[n * l + k] += clean * v->rows[n * l + k];
+    for (PetscInt k = 0; k < size; k++) B[n * l + k] -= clean * v->N[size * l + k];
     B[(n + 1) * l] += 1 + clean;
   }
   for (PetscInt k = size; k < n; k++) trace += B[(n + 1) * k];

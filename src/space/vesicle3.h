@@ -38,11 +38,14 @@ struct _p_Vesicle3 {
   PetscReal *S;           /* [size][size] own single layer */
   PetscReal *K;           /* [size][size], factored; NULL where the ratio is 1 */
   PetscBLASInt *pivot;    /* [size] of it */
-  PetscReal *rows;        /* [size][unknowns] L = -[P_n; A] */
-  PetscReal *columns;     /* [unknowns][size] C */
-  PetscReal *pull;        /* [size][size] K_s */
-  PetscReal *clean;       /* [size] gamma Lambda */
-  PetscReal *known;       /* [size] */
+  PetscReal *N;           /* [size][size] P_n */
+  PetscReal *columns;     /* [unknowns][size] C, with A^T */
+  PetscInt motions;       /* rigid ones that the sphere's fields have: 6; of bodies of revolution 1, along the axis */
+  PetscReal *motion;      /* [motions][size] translations, turns about the middle of X* */
+  PetscReal middle[3];
+  PetscReal *pull;  /* [size][size] K_s */
+  PetscReal *clean; /* [size] gamma Lambda */
+  PetscReal *known; /* [size] */
   PetscReal a0;
 };
 
@@ -51,27 +54,23 @@ PETSC_EXTERN PetscErrorCode Vesicle3Create(Sphere sphere, const Vesicle3Setting 
                                            Vesicle3 *vesicle);
 PETSC_EXTERN PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle);
 
-/* Vesicle3Place - surface, S, K, rows and pull at X*[size]; sigma[count]: the last tension. Vesicle3Factor - factor K,
-   when a tube has been added to it; done: it is not singular. Vesicle3Linearise - columns and known about Y[size], for
-   a0 and Xhat[size]. Not collective. */
+/* Vesicle3Place - surface, S, K, P_n, A, motions and pull at X*[size]; sigma[count]: the last tension. Vesicle3Factor -
+   factor K, when a tube has been added to it; done: it is not singular. Vesicle3Linearise - columns and known about
+   Y[size], for a0 and Xhat[size]. Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Place(Vesicle3 vesicle, const PetscReal Xstar[], const PetscReal sigma[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Factor(Vesicle3 vesicle, PetscBool *done);
 PETSC_EXTERN PetscErrorCode Vesicle3Linearise(Vesicle3 vesicle, PetscReal a0, const PetscReal Xhat[],
                                               const PetscReal Xstar[], const PetscReal Y[]);
 
-/* Vesicle3AddKnown - known += G[size], the gradient of another energy. Not collective. */
-PETSC_EXTERN PetscErrorCode Vesicle3AddKnown(Vesicle3 vesicle, const PetscReal G[]);
-
 /* Vesicle3Force - F[size] = C x, x[unknowns]. Vesicle3Velocity - U := K^-1 U, columns U[columns][size], becomes the
-   velocity with this ratio of viscosities from that of equal ones. Vesicle3Rows - y[unknowns] = L U + what the rows
-   have of x alone (NULL: nothing). Not collective. */
+   velocity with this ratio of viscosities from that of equal ones. Vesicle3Rows - y[unknowns] = -(P_n, A) U + what the
+   rows have of x alone (NULL: nothing). Not collective. */
 PETSC_EXTERN PetscErrorCode Vesicle3Force(Vesicle3 vesicle, const PetscReal x[], PetscReal F[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Velocity(Vesicle3 vesicle, PetscInt columns, PetscReal U[]);
 PETSC_EXTERN PetscErrorCode Vesicle3Rows(Vesicle3 vesicle, const PetscReal x[], const PetscReal U[], PetscReal y[]);
 
-/* Vesicle3RemoveMotion - U[size] less the rigid motion of the shape X*[size] that is nearest to it in coefficients. Not
-   collective. */
-PETSC_EXTERN PetscErrorCode Vesicle3RemoveMotion(Vesicle3 vesicle, const PetscReal Xstar[], PetscReal U[]);
+/* Vesicle3RemoveMotion - U[size] less the rigid motion of X* that is nearest to it in coefficients. Not collective. */
+PETSC_EXTERN PetscErrorCode Vesicle3RemoveMotion(Vesicle3 vesicle, PetscReal U[]);
 
 /* Vesicle3Target - b[unknowns], the right-hand sides, without those of u_inf: the labels' rigid part by the last
    velocity U[size] (NULL: none), and the target of the area. Not collective. */

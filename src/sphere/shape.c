@@ -121,49 +121,30 @@ static void FitDirections(const ShapeMoments *m, PetscInt n, const PetscReal x[]
   }
 }
 
-/* The coefficients c[3][count] that leave least of b[3][n], the points, with the columns Y[count][n]; b and Y are
-   work. */
-static PetscErrorCode FitLeastSquares(PetscInt n, PetscInt count, PetscReal Y[], PetscReal b[], PetscReal c[],
-                                      PetscReal *spread, PetscReal *off) {
-  const PetscBLASInt rows = (PetscBLASInt)n, columns = (PetscBLASInt)count, sides = 3, room = 8 * (rows + columns);
-  const PetscReal least = FIT_RANK;
-  PetscBLASInt rank, info;
-  PetscReal *singular, *work;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(count, &singular, room, &work));
-  PetscCallBLAS("LAPACKgelss",
-                LAPACKgelss_(&rows, &columns, &sides, Y, &rows, b, &rows, singular, &least, &rank, work, &room, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's gelss failed: %d", (int)info);
-  *spread = singular[count - 1] / singular[0];
-  *off = 0;
-  for (int d = 0; d < 3; d++) {
-    PetscCall(PetscArraycpy(c + d * count, b + d * n, count));
-    for (PetscInt i = count; i < n; i++) *off += PetscSqr(b[d * n + i]) / (PetscReal)n;
-  }
-  *off = PetscSqrtReal(*off);
-  PetscCall(PetscFree2(singular, work));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ShapeFit(Sphere sphere, PetscInt n, const PetscReal x[], PetscReal c[], PetscReal *spread,
                         PetscReal *off) {
   ShapeMoments m = {.axis = {1, 1, 1}, .direction = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  PetscReal *theta, *phi, *Y, *b;
+  const PetscInt count = sphere->count;
+  PetscReal *theta, *phi, *Y, *b, *singular, square = 0;
   Surface at;
   PetscFunctionBeginUser;
   PetscCall(SurfaceCreate(sphere, &at));
-  PetscCall(PetscMalloc4(n, &theta, n, &phi, sphere->count * n, &Y, 3 * n, &b));
+  PetscCall(PetscMalloc5(n, &theta, n, &phi, count * n, &Y, 3 * n, &b, count, &singular));
   for (PetscInt i = 0; i < 3 * n; i++) m.center[i % 3] += x[i] / (PetscReal)n;
   for (int pass = 0; pass < FIT_PASSES; pass++) {
     FitDirections(&m, n, x, theta, phi);
     PetscCall(HarmonicsAt(sphere->p, n, theta, phi, 1, Y));
     for (PetscInt i = 0; i < 3 * n; i++) b[i % 3 * n + i / 3] = x[i];
-    PetscCall(FitLeastSquares(n, sphere->count, Y, b, c, spread, off));
+    PetscCall(DenseLeastSquares(n, count, Y, 3, b, FIT_RANK, singular));
+    *spread = singular[count - 1] / singular[0];
+    for (int d = 0; d < 3; d++) PetscCall(PetscArraycpy(c + d * count, b + d * n, count));
     PetscCall(SurfacePlace(at, c, PETSC_FALSE));
     if (*spread < FIT_RANK || !ShapeIsStar(at, m.center)) break; /* no surface whose moments mean something */
     PetscCall(ShapeMeasure(at, &m));
   }
-  PetscCall(PetscFree4(theta, phi, Y, b));
+  for (PetscInt k = 0; k < 3 * n; k++) square += k % n < count ? 0 : PetscSqr(b[k]); /* what is left of the points */
+  *off = PetscSqrtReal(square / (PetscReal)n);
+  PetscCall(PetscFree5(theta, phi, Y, b, singular));
   PetscCall(SurfaceDestroy(&at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,34 +29,42 @@ PetscErrorCode SphereGridDestroy(SphereGrid *g) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Columns of a table of harmonics: those of a scalar first. */
-static PetscInt SphereColumns(SphereSymmetry symmetry, PetscInt p) {
-  return symmetry == SPHERE_WHOLE ? HarmonicsCount(p) : 3 * p + 1;
-}
-
-void FieldComponents(SphereSymmetry symmetry, PetscInt p, PetscInt n, const PetscReal part[], PetscInt which,
-                     FieldComponent component[3]) {
-  const PetscInt count = HarmonicsCount(p);
-  for (int d = 0; d < 3; d++) {
-    FieldComponent *c = &component[d];
-    c->first = symmetry == SPHERE_WHOLE ? d * count : d ? p + 1 : 0;
-    c->columns = symmetry == SPHERE_WHOLE ? count : d ? p : p + 1;
-    c->part[which] = part + (symmetry == SPHERE_WHOLE || d == 0 ? 0 : p + 1 + (d - 1) * p) * n;
+/* The harmonics of degree p at most at the points of the table's grid. */
+static PetscErrorCode SphereTableFill(SphereTable *t, PetscInt p, SphereSymmetry symmetry, PetscInt parts) {
+  const PetscBool whole = (PetscBool)(symmetry == SPHERE_WHOLE);
+  const PetscInt n = t->grid.n, count = HarmonicsCount(p), columns = whole ? count : 3 * p + 1;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(parts * columns * n, &t->part[0]));
+  PetscCall((whole ? HarmonicsAt : HarmonicsRevolvedAt)(p, n, t->grid.theta, t->grid.phi, parts, t->part[0]));
+  for (PetscInt part = 0; part < parts; part++) {
+    t->part[part] = t->part[0] + part * columns * n;
+    for (int d = 0; d < 3; d++) {
+      FieldComponent *own = &t->component[d];
+      own->first = whole ? d * count : d ? p + 1 : 0;
+      own->columns = whole ? count : d ? p : p + 1;
+      own->part[part] = t->part[part] + (whole || d == 0 ? 0 : p + 1 + (d - 1) * p) * n;
+    }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, PetscInt parts, SphereTable *t) {
-  const PetscInt columns = SphereColumns(symmetry, p);
   PetscFunctionBeginUser;
   *t = (SphereTable){0};
   PetscCall(SphereGridCreate(q, symmetry == SPHERE_WHOLE ? GRID_WHOLE : GRID_MERIDIAN, &t->grid));
-  PetscCall(PetscMalloc1(parts * columns * t->grid.n, &t->part[0]));
-  PetscCall((symmetry == SPHERE_WHOLE ? HarmonicsAt : HarmonicsRevolvedAt)(p, t->grid.n, t->grid.theta, t->grid.phi,
-                                                                           parts, t->part[0]));
-  for (PetscInt part = 0; part < parts; part++) {
-    t->part[part] = t->part[0] + part * columns * t->grid.n;
-    FieldComponents(symmetry, p, t->grid.n, t->part[part], part, t->component);
-  }
+  PetscCall(SphereTableFill(t, p, symmetry, parts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphereTableAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
+                             const PetscReal weight[], PetscInt parts, SphereTable *t) {
+  PetscFunctionBeginUser;
+  *t = (SphereTable){.grid.n = n};
+  PetscCall(PetscMalloc3(n, &t->grid.theta, n, &t->grid.phi, n, &t->grid.weight));
+  PetscCall(PetscArraycpy(t->grid.theta, theta, n));
+  PetscCall(PetscArraycpy(t->grid.phi, phi, n));
+  PetscCall(PetscArraycpy(t->grid.weight, weight, n));
+  PetscCall(SphereTableFill(t, p, SPHERE_WHOLE, parts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,8 +94,13 @@ PetscErrorCode SphereTableProject(const SphereTable *t, PetscInt count, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How many components have the same harmonics, and go at once. */
+static int SphereAlike(const SphereTable *t) {
+  return t->component[0].part[HARMONIC] == t->component[1].part[HARMONIC] ? 3 : 1;
+}
+
 PetscErrorCode SphereFieldValues(const SphereTable *t, PetscInt part, const PetscReal c[], PetscReal y[]) {
-  const int alike = t->component[0].part[part] == t->component[1].part[part] ? 3 : 1; /* components at once */
+  const int alike = SphereAlike(t);
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d += alike) {
     const FieldComponent *own = &t->component[d];
@@ -97,18 +110,26 @@ PetscErrorCode SphereFieldValues(const SphereTable *t, PetscInt part, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphereFieldProject(const SphereTable *t, const PetscReal y[], PetscReal c[]) {
+PetscErrorCode SphereFieldAdd(const SphereTable *t, const PetscReal y[], PetscReal c[]) {
   const PetscInt n = t->grid.n;
+  const int alike = SphereAlike(t);
   PetscReal *weighted;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * n, &weighted));
   for (PetscInt k = 0; k < 3 * n; k++) weighted[k] = t->grid.weight[k % n] * y[k];
-  for (int d = 0; d < 3; d++) (void)PetscArrayzero(c + t->component[d].first, t->component[d].columns);
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < 3; d += alike) {
     const FieldComponent *own = &t->component[d];
-    PetscCall(DenseMultAdd(PETSC_TRUE, n, own->columns, 1, own->part[HARMONIC], weighted + d * n, c + own->first));
+    PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){own->part[HARMONIC], n, own->columns, n},
+                                 (DenseView){weighted + d * n, n, alike, n}, 1, c + own->first, own->columns));
   }
   PetscCall(PetscFree(weighted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphereFieldProject(const SphereTable *t, const PetscReal y[], PetscReal c[]) {
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) PetscCall(PetscArrayzero(c + t->component[d].first, t->component[d].columns));
+  PetscCall(SphereFieldAdd(t, y, c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,18 +140,13 @@ static PetscReal SphereWholeEntry(Sphere s, int d, PetscInt k, PetscInt *at) {
   return s->symmetry == SPHERE_WHOLE || d == 0 ? 1 : 1 / PETSC_SQRT2;
 }
 
-void SphereUnfold(Sphere s, const PetscReal c[], PetscReal whole[]) {
-  (void)PetscArrayzero(whole, 3 * HarmonicsCount(s->p));
-  for (int d = 0; d < 3; d++)
+void SphereUnfold(Sphere s, int components, const PetscReal c[], PetscReal whole[]) {
+  (void)PetscArrayzero(whole, components * HarmonicsCount(s->p));
+  for (int d = 0; d < components; d++)
     for (PetscInt k = 0, at; k < s->fine.component[d].columns; k++) {
       const PetscReal share = SphereWholeEntry(s, d, k, &at);
       whole[at] = share * c[s->fine.component[d].first + k];
     }
-}
-
-void SphereUnfoldScalar(Sphere s, const PetscReal c[], PetscReal whole[]) {
-  (void)PetscArrayzero(whole, HarmonicsCount(s->p));
-  for (PetscInt k = 0; k < s->count; k++) whole[s->symmetry == SPHERE_WHOLE ? k : k * k + k] = c[k];
 }
 
 void SphereFold(Sphere s, const PetscReal whole[], PetscReal c[]) {
@@ -154,39 +170,28 @@ static PetscReal LegendreSum(PetscInt q, PetscReal x) {
   return sum;
 }
 
-/* The angles of the points of a grid whose pole has been turned to (pole, 0). */
-static void TurnPole(const SphereGrid *g, PetscReal pole, PetscReal theta[], PetscReal phi[]) {
+/* A grid as one whose pole has been turned to (pole, 0), with singular weights. */
+static void SphereGridTurn(SphereGrid *g, PetscReal pole) {
   const PetscReal c = PetscCosReal(pole), s = PetscSinReal(pole);
   for (PetscInt i = 0; i < g->n; i++) {
     const PetscReal across = PetscSinReal(g->theta[i]), x = across * PetscCosReal(g->phi[i]),
                     y = across * PetscSinReal(g->phi[i]), z = PetscCosReal(g->theta[i]), turned = c * x + s * z;
-    theta[i] = PetscAtan2Real(PetscSqrtReal(turned * turned + y * y), c * z - s * x);
-    phi[i] = PetscAtan2Real(y, turned);
+    g->weight[i] *= 2 * PetscSinReal(g->theta[i] / 2) * LegendreSum(g->q, z);
+    g->theta[i] = PetscAtan2Real(PetscSqrtReal(turned * turned + y * y), c * z - s * x);
+    g->phi[i] = PetscAtan2Real(y, turned);
   }
 }
 
-static PetscErrorCode TurnedGridsCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, const SphereGrid *targets,
-                                        TurnedGrids *t) {
-  SphereGrid g;
-  PetscReal *theta, *phi;
+/* tables[p + 1] of harmonics of degree `degree` on the turned grids of a sphere. */
+static PetscErrorCode SphereTurnedCreate(Sphere s, PetscInt degree, SphereTable **tables) {
   PetscFunctionBeginUser;
-  PetscCall(SphereGridCreate(q, symmetry == SPHERE_WHOLE ? GRID_WHOLE : GRID_HALF, &g));
-  t->p = p;
-  t->symmetry = symmetry;
-  t->columns = SphereColumns(symmetry, p);
-  t->latitudes = targets->q + 1;
-  t->n = g.n;
-  PetscCall(PetscMalloc2(g.n, &theta, g.n, &phi));
-  PetscCall(PetscMalloc2(t->latitudes * t->columns * g.n, &t->Y, g.n, &t->weight));
-  for (PetscInt i = 0; i < t->latitudes; i++) {
-    TurnPole(&g, targets->theta[i * targets->around], theta, phi);
-    PetscCall((symmetry == SPHERE_WHOLE ? HarmonicsAt : HarmonicsRevolvedAt)(p, g.n, theta, phi, 1,
-                                                                             t->Y + i * t->columns * g.n));
+  PetscCall(PetscCalloc1(s->p + 1, tables));
+  for (PetscInt i = 0; i <= s->p; i++) {
+    SphereTable *t = &(*tables)[i];
+    PetscCall(SphereGridCreate(3 * s->p / 2, s->symmetry == SPHERE_WHOLE ? GRID_WHOLE : GRID_HALF, &t->grid));
+    SphereGridTurn(&t->grid, s->shape.grid.theta[i * s->shape.grid.around]);
+    PetscCall(SphereTableFill(t, degree, s->symmetry, 1));
   }
-  for (PetscInt j = 0; j < g.n; j++)
-    t->weight[j] = g.weight[j] * 2 * PetscSinReal(g.theta[j] / 2) * LegendreSum(q, PetscCosReal(g.theta[j]));
-  PetscCall(PetscFree2(theta, phi));
-  PetscCall(SphereGridDestroy(&g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -209,9 +214,9 @@ PetscErrorCode SphereCreate(PetscInt p, SphereSymmetry symmetry, Sphere *out) {
 
 PetscErrorCode SphereTurn(Sphere s, PetscBool normals) {
   PetscFunctionBeginUser;
-  if (!s->turned.n) PetscCall(TurnedGridsCreate(s->p, 3 * s->p / 2, s->symmetry, &s->shape.grid, &s->turned));
-  if (!normals || s->normal.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TurnedGridsCreate(2 * s->p, 3 * s->p / 2, s->symmetry, &s->shape.grid, &s->normal));
+  if (!s->turned) PetscCall(SphereTurnedCreate(s, s->p, &s->turned));
+  if (!normals || s->normal) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SphereTurnedCreate(s, 2 * s->p, &s->normal));
   PetscCall(SphereTableCreate(2 * s->p, 2 * s->p, s->symmetry, 1, &s->twice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,12 +225,16 @@ PetscErrorCode SphereDestroy(Sphere *sphere) {
   Sphere s = *sphere;
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i <= s->p; i++) {
+    if (s->turned) PetscCall(SphereTableDestroy(&s->turned[i]));
+    if (s->normal) PetscCall(SphereTableDestroy(&s->normal[i]));
+  }
+  PetscCall(PetscFree(s->turned));
+  PetscCall(PetscFree(s->normal));
   PetscCall(SphereTableDestroy(&s->shape));
   PetscCall(SphereTableDestroy(&s->fine));
   PetscCall(SphereTableDestroy(&s->twice));
   PetscCall(PetscFree(s->degree));
-  PetscCall(PetscFree2(s->turned.Y, s->turned.weight));
-  PetscCall(PetscFree2(s->normal.Y, s->normal.weight));
   PetscCall(PetscFree(*sphere));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,35 +42,26 @@ typedef struct {
   const PetscReal *part[HARMONIC_PARTS]; /* [columns][n] */
 } FieldComponent;
 
-/* A grid with its harmonics. */
+/* A grid with its harmonics, of which SphereTableCreate makes the first `parts`. */
 typedef struct {
   SphereGrid grid;
   PetscReal *part[HARMONIC_PARTS]; /* [columns][n], scalars first; NULL: not made */
   FieldComponent component[3];
 } SphereTable;
 
-/* The turned grids of the points of a grid at longitude 0. */
-typedef struct {
-  PetscInt p;              /* degree of the harmonics */
-  PetscInt latitudes, n;   /* points of each; 0: not made */
-  PetscInt columns;        /* harmonics of a table */
-  PetscReal *Y;            /* [latitudes][columns][n] */
-  PetscReal *weight;       /* [n] the singular ones */
-  SphereSymmetry symmetry; /* of the fields */
-} TurnedGrids;
-
 typedef struct _p_Sphere *Sphere;
 struct _p_Sphere {
   SphereSymmetry symmetry;
-  PetscInt p;         /* degree */
-  PetscInt count;     /* coefficients of a scalar */
-  PetscInt size;      /* coefficients of a field */
-  PetscInt *degree;   /* [size] of a field's harmonics */
-  SphereTable shape;  /* degree p, with first derivatives: targets of layers, points that are shown */
-  SphereTable fine;   /* degree 2p, with derivatives: bending, area */
-  TurnedGrids turned; /* degree 3p/2, poles at the points of `shape`; made when first used */
-  TurnedGrids normal; /* these points with harmonics of degree 2p; made when first used */
-  SphereTable twice;  /* harmonics of degree 2p on the grid of degree 2p, made with `normal` */
+  PetscInt p;          /* degree */
+  PetscInt count;      /* coefficients of a scalar */
+  PetscInt size;       /* coefficients of a field */
+  PetscInt *degree;    /* [size] of a field's harmonics */
+  SphereTable shape;   /* degree p, with first derivatives: targets of layers, points that are shown */
+  SphereTable fine;    /* degree 2p, with derivatives: bending, area */
+  SphereTable *turned; /* [p + 1] degree 3p/2 with singular weights, poles at the points of `shape` at longitude 0, one
+                          a latitude; NULL until first used, as those below */
+  SphereTable *normal; /* [p + 1] these points with harmonics of degree 2p */
+  SphereTable twice;   /* harmonics of degree 2p on the grid of degree 2p, made with `normal` */
 };
 
 /* SphereCreate - the tables of degree p >= 2. Not collective. */
@@ -82,8 +73,9 @@ PETSC_EXTERN PetscErrorCode SphereDestroy(Sphere *sphere);
 PETSC_EXTERN PetscErrorCode SphereTurn(Sphere sphere, PetscBool normals);
 
 /* SphereTableCreate - of harmonics of degree p at most on a grid of degree q; parts: of those of HarmonicsAt, the
-   first ones. Not collective.
- */
+   first ones. SphereTableAt - on a whole sphere at n points with these weights. Not collective. */
+PETSC_EXTERN PetscErrorCode SphereTableAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
+                                          const PetscReal weight[], PetscInt parts, SphereTable *table);
 PETSC_EXTERN PetscErrorCode SphereTableCreate(PetscInt p, PetscInt q, SphereSymmetry symmetry, PetscInt parts,
                                               SphereTable *table);
 PETSC_EXTERN PetscErrorCode SphereTableDestroy(SphereTable *table);
@@ -95,18 +87,13 @@ PETSC_EXTERN PetscErrorCode SphereTableValues(const SphereTable *table, PetscInt
 PETSC_EXTERN PetscErrorCode SphereTableProject(const SphereTable *table, PetscInt count, PetscInt fields,
                                                const PetscReal y[], PetscReal c[]);
 
-/* SphereFieldValues - y[3][n] at the points, of the field c[size]. SphereFieldProject - c[size] of the values y[3][n].
-   SphereUnfold - whole[3][HarmonicsCount(p)], the coefficients on a whole sphere of the field c[size];
-   SphereUnfoldScalar - whole[HarmonicsCount(p)] of the scalar c[count]. SphereFold - the transpose of SphereUnfold. Not
-   collective. */
+/* SphereFieldValues - y[3][n] at the points, of the field c[size]. SphereFieldProject - c[size] of the values y[3][n];
+   SphereFieldAdd - c += them.
+   SphereUnfold - whole[components][HarmonicsCount(p)], the coefficients on a whole sphere of the field c[size] (3) or
+   the scalar c[count] (1). SphereFold - the transpose of this map, of a field. Not collective. */
 PETSC_EXTERN PetscErrorCode SphereFieldValues(const SphereTable *table, PetscInt part, const PetscReal c[],
                                               PetscReal y[]);
 PETSC_EXTERN PetscErrorCode SphereFieldProject(const SphereTable *table, const PetscReal y[], PetscReal c[]);
-PETSC_EXTERN void SphereUnfold(Sphere sphere, const PetscReal c[], PetscReal whole[]);
-PETSC_EXTERN void SphereUnfoldScalar(Sphere sphere, const PetscReal c[], PetscReal whole[]);
+PETSC_EXTERN PetscErrorCode SphereFieldAdd(const SphereTable *table, const PetscReal y[], PetscReal c[]);
+PETSC_EXTERN void SphereUnfold(Sphere sphere, int components, const PetscReal c[], PetscReal whole[]);
 PETSC_EXTERN void SphereFold(Sphere sphere, const PetscReal whole[], PetscReal c[]);
-
-/* FieldComponents - the components of fields with these symmetry and degree, whose harmonics at n points are
-   part[columns][n]. Not collective. */
-PETSC_EXTERN void FieldComponents(SphereSymmetry symmetry, PetscInt p, PetscInt n, const PetscReal part[],
-                                  PetscInt which, FieldComponent component[3]);

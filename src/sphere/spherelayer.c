@@ -1,7 +1,10 @@
 #include "sphere/spherelayer.h"
 #include "numerics/blas.h"
 
-const int TensorPair[TENSOR_COUNT][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+/* Components of symmetric tensors, and where the product of the components a and b is. */
+enum { TENSOR_XX, TENSOR_YY, TENSOR_ZZ, TENSOR_YZ, TENSOR_XZ, TENSOR_XY, TENSOR_COUNT };
+static const int TensorPlace[3][3] = {
+    {TENSOR_XX, TENSOR_XY, TENSOR_XZ}, {TENSOR_XY, TENSOR_YY, TENSOR_YZ}, {TENSOR_XZ, TENSOR_YZ, TENSOR_ZZ}};
 
 /* G = (a I + b d d) at one of n distances. */
 static inline void SetTensor(PetscInt n, PetscReal a, PetscReal b, const PetscReal d[], PetscReal G[]) {
@@ -46,15 +49,15 @@ typedef struct {
   PetscReal *rows;   /* [count][around TENSOR_COUNT] */
 } LatitudeWork;
 
-/* y[around][3][n]: fields with coefficients c[3] of the turned table's degree, at the points of all turns. */
-static PetscErrorCode LayerTurnedValues(const TurnedGrids *t, PetscInt latitude, const PetscReal c[], LatitudeWork *w,
+/* y[around][3][n]: fields with coefficients c[3] of degree p, at the points of all turns of a turned table. */
+static PetscErrorCode LayerTurnedValues(const SphereTable *t, PetscInt p, const PetscReal c[], LatitudeWork *w,
                                         PetscReal y[]) {
-  const PetscInt count = HarmonicsCount(t->p);
+  const PetscInt count = HarmonicsCount(p);
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < w->around; j++)
     for (int d = 0; d < 3; d++)
-      HarmonicsTurn(t->p, 2 * PETSC_PI * j / w->around, PETSC_FALSE, c + d * count, w->turned + (3 * j + d) * count);
-  PetscCall(DenseProduct(PETSC_FALSE, t->n, 3 * w->around, count, t->Y + latitude * count * t->n, w->turned, y));
+      HarmonicsTurn(p, 2 * PETSC_PI * j / w->around, PETSC_FALSE, c + d * count, w->turned + (3 * j + d) * count);
+  PetscCall(SphereTableValues(t, HARMONIC, count, 3 * w->around, w->turned, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,9 +70,10 @@ static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt la
   for (PetscInt j = 0; j < w->around; j++) {
     PetscReal *d = w->X + 3 * j * n;
     for (PetscInt k = 0; k < 3 * n; k++) d[k] = at[(k / n) * targets + latitude * w->around + j] - d[k];
-    kernel->set(n, d, w->normal ? w->normal + 3 * j * n : NULL, s->turned.weight, w->G + TENSOR_COUNT * j * n);
+    kernel->set(n, d, w->normal ? w->normal + 3 * j * n : NULL, s->turned[latitude].grid.weight,
+                w->G + TENSOR_COUNT * j * n);
   }
-  PetscCall(DenseProduct(PETSC_TRUE, rows, count, n, w->G, s->turned.Y + latitude * count * n, w->rows));
+  PetscCall(DenseProduct(PETSC_TRUE, rows, count, n, w->G, s->turned[latitude].part[HARMONIC], w->rows));
   for (PetscInt r = 0; r < rows; r++) {
     const PetscInt j = r / TENSOR_COUNT, target = latitude * w->around + j;
     for (PetscInt l = 0; l < count; l++) row[l] = w->rows[l * rows + r];
@@ -79,32 +83,37 @@ static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt la
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void LayerNormals(PetscInt n, const PetscReal theta[], const PetscReal T[], const PetscReal P[], PetscReal a[]) {
+PetscErrorCode LayerNormals(const SphereTable *t, const PetscReal c[], PetscReal a[]) {
+  const PetscInt n = t->grid.n;
+  PetscReal *T, *P;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &T, 3 * n, &P));
+  PetscCall(SphereFieldValues(t, HARMONIC_T, c, T));
+  PetscCall(SphereFieldValues(t, HARMONIC_P, c, P));
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
-      a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(theta[i]);
+      a[d * n + i] = (T[e * n + i] * P[f * n + i] - T[f * n + i] * P[e * n + i]) / PetscSinReal(t->grid.theta[i]);
     }
+  PetscCall(PetscFree2(T, P));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Coefficients of degree 2p of n dA/domega, a polynomial of that degree. */
 static PetscErrorCode LayerNormalFields(Sphere s, const PetscReal c[], PetscReal m[]) {
-  const PetscInt n = s->fine.grid.n;
-  PetscReal *T, *P, *a;
+  PetscReal *a;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(3 * n, &T, 3 * n, &P, 3 * n, &a));
-  PetscCall(SphereFieldValues(&s->fine, HARMONIC_T, c, T));
-  PetscCall(SphereFieldValues(&s->fine, HARMONIC_P, c, P));
-  LayerNormals(n, s->fine.grid.theta, T, P, a);
+  PetscCall(PetscMalloc1(3 * s->fine.grid.n, &a));
+  PetscCall(LayerNormals(&s->fine, c, a));
   PetscCall(SphereFieldProject(&s->twice, a, m));
-  PetscCall(PetscFree3(T, P, a));
+  PetscCall(PetscFree(a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* All inner integrals, out[TENSOR_COUNT][count][targets]; m: coefficients of the normals. */
 static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
                                      PetscReal out[]) {
-  const PetscInt around = 2 * s->p + 2, n = s->turned.n, many = HarmonicsCount(kernel->normal ? 2 * s->p : s->p);
+  const PetscInt around = 2 * s->p + 2, n = s->turned->grid.n, many = HarmonicsCount(kernel->normal ? 2 * s->p : s->p);
   LatitudeWork w = {.around = around, .n = n};
   PetscReal *at;
   PetscFunctionBeginUser;
@@ -112,9 +121,9 @@ static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const Pets
   PetscCall(PetscMalloc2(TENSOR_COUNT * around * n, &w.G, TENSOR_COUNT * around * s->count, &w.rows));
   if (kernel->normal) PetscCall(PetscMalloc1(3 * around * n, &w.normal));
   PetscCall(SphereFieldValues(&s->shape, HARMONIC, c, at));
-  for (PetscInt i = 0; i < s->turned.latitudes; i++) {
-    PetscCall(LayerTurnedValues(&s->turned, i, c, &w, w.X));
-    if (kernel->normal) PetscCall(LayerTurnedValues(&s->normal, i, m, &w, w.normal));
+  for (PetscInt i = 0; i <= s->p; i++) {
+    PetscCall(LayerTurnedValues(&s->turned[i], s->p, c, &w, w.X));
+    if (kernel->normal) PetscCall(LayerTurnedValues(&s->normal[i], 2 * s->p, m, &w, w.normal));
     PetscCall(LayerLatitude(s, kernel, i, at, &w, out));
   }
   PetscCall(PetscFree(w.normal));
@@ -131,14 +140,42 @@ static PetscErrorCode WholeLayerMatrix(Sphere s, const Kernel3 *kernel, const Pe
   PetscCall(PetscMalloc2(TENSOR_COUNT * count * targets, &out, TENSOR_COUNT * count * count, &block));
   PetscCall(LayerAtTargets(s, kernel, c, m, out));
   PetscCall(SphereTableProject(&s->shape, count, TENSOR_COUNT * count, out, block));
-  for (int q = 0; q < TENSOR_COUNT; q++)
-    for (PetscInt l = 0; l < count; l++) {
-      const PetscInt a = TensorPair[q][0], b = TensorPair[q][1];
-      const PetscReal *column = block + (q * count + l) * count;
-      PetscCall(PetscArraycpy(M + (b * count + l) * size + a * count, column, count));
-      PetscCall(PetscArraycpy(M + (a * count + l) * size + b * count, column, count));
-    }
+  for (int a = 0; a < 3; a++)
+    for (PetscInt l = 0; l < size; l++)
+      PetscCall(PetscArraycpy(M + l * size + a * count, block + (TensorPlace[a][l / count] * count + l % count) * count,
+                              count));
   PetscCall(PetscFree2(out, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of a body of revolution: targets are the points of one meridian, where fields have two components. */
+static PetscErrorCode MeridianLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
+                                          PetscReal M[]) {
+  const PetscInt n = s->turned->grid.n, latitudes = s->p + 1;
+  PetscReal *at, *d, *normal, *G, *rows, *out;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc5(3 * latitudes, &at, 3 * n, &d, 3 * n, &normal, TENSOR_COUNT * n, &G, TENSOR_COUNT * latitudes,
+                         &rows));
+  PetscCall(PetscCalloc1(s->size * 3 * latitudes, &out)); /* [size][3][latitudes] inner integrals of each harmonic */
+  PetscCall(SphereFieldValues(&s->shape, HARMONIC, c, at));
+  for (PetscInt i = 0; i < latitudes; i++) {
+    const SphereTable *turned = &s->turned[i];
+    PetscCall(SphereFieldValues(turned, HARMONIC, c, d));
+    for (PetscInt k = 0; k < 3 * n; k++) d[k] = at[k / n * latitudes + i] - d[k];
+    if (kernel->normal) PetscCall(SphereFieldValues(&s->normal[i], HARMONIC, m, normal));
+    kernel->set(n, d, normal, turned->grid.weight, G);
+    for (int b = 0; b < 3; b++) {
+      const FieldComponent *own = &turned->component[b];
+      PetscCall(DenseProduct(PETSC_TRUE, TENSOR_COUNT, own->columns, n, G, own->part[HARMONIC], rows));
+      for (PetscInt k = 0; k < own->columns; k++)
+        for (int a = 0; a < 2; a++)
+          out[(3 * (own->first + k) + a) * latitudes + i] += rows[k * TENSOR_COUNT + TensorPlace[a][b]];
+    }
+  }
+  for (PetscInt l = 0; l < s->size; l++)
+    PetscCall(SphereFieldProject(&s->shape, out + 3 * l * latitudes, M + l * s->size));
+  PetscCall(PetscFree5(at, d, normal, G, rows));
+  PetscCall(PetscFree(out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,12 +9,8 @@
 #pragma once
 #include "sphere/spheregrid.h"
 
-/* Components of symmetric tensors, in this order. */
-enum { TENSOR_XX, TENSOR_YY, TENSOR_ZZ, TENSOR_YZ, TENSOR_XZ, TENSOR_XY, TENSOR_COUNT };
-PETSC_EXTERN const int TensorPair[TENSOR_COUNT][2];
-
-/* Kernel3 - G[TENSOR_COUNT][n] = weight[n] times a kernel at n distances d[3][n] from its sources; normal[3][n]: n
-   dA/domega at the sources, where the kernel has one.
+/* Kernel3 - G[6][n] = weight[n] times the components xx, yy, zz, yz, xz, xy of a kernel at n distances d[3][n] from its
+   sources; normal[3][n]: n dA/domega at the sources, where the kernel has one.
    Stokeslet3:   (I/r + d d/r^3)/(8 pi), of viscosity 1.
    Stresslet3:   -3 d d (d.normal)/(4 pi r^5); on the surface its layer makes U/2 of a rigid motion U. */
 typedef struct {
@@ -29,12 +25,6 @@ PETSC_EXTERN const Kernel3 Stokeslet3, Stresslet3;
 PETSC_EXTERN PetscErrorCode SphereLayerMatrix(Sphere sphere, const Kernel3 *kernel, const PetscReal c[], PetscReal M[]);
 PETSC_EXTERN PetscErrorCode SphereSingleLayer(Sphere sphere, PetscReal nu, const PetscReal c[], PetscReal M[]);
 
-/* LayerNormals - a[3][n] = n dA/domega at n points, from the derivatives T[3][n] and P[3][n] of X by theta and phi. Not
+/* LayerNormals - a[3][n] = n dA/domega of the surface c[size] at the points of a table with first derivatives. Not
    collective. */
-PETSC_EXTERN void LayerNormals(PetscInt n, const PetscReal theta[], const PetscReal T[], const PetscReal P[],
-                               PetscReal a[]);
-
-/* MeridianLayerMatrix - SphereLayerMatrix of a body of revolution; m: coefficients of degree 2p of n dA/domega, where
-   the kernel has a normal. Not collective. */
-PETSC_EXTERN PetscErrorCode MeridianLayerMatrix(Sphere sphere, const Kernel3 *kernel, const PetscReal c[],
-                                                const PetscReal m[], PetscReal M[]);
+PETSC_EXTERN PetscErrorCode LayerNormals(const SphereTable *table, const PetscReal c[], PetscReal a[]);

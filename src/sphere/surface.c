@@ -149,3 +149,98 @@ PetscErrorCode SurfacePlace(Surface s, const PetscReal c[], PetscBool derivative
   if (derivatives) PetscCall(SurfaceDerivatives(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* C[columns_B][columns_A] = SUM over points of factor A B, A[columns_A][n], B[columns_B][n]. */
+static PetscErrorCode SurfaceProduct(Surface s, const PetscReal factor[], PetscInt columns_A, const PetscReal A[],
+                                     PetscInt columns_B, const PetscReal B[], PetscReal C[]) {
+  const PetscInt n = s->n;
+  PetscReal *scaled;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * columns_A, &scaled));
+  for (PetscInt k = 0; k < columns_A; k++)
+    for (PetscInt i = 0; i < n; i++) scaled[k * n + i] = factor[i] * A[k * n + i];
+  PetscCall(DenseProduct(PETSC_TRUE, columns_A, columns_B, n, scaled, B, C));
+  PetscCall(PetscFree(scaled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* C[columns][columns] = SUM over points of the grid's weight times A A, A[columns][n]. */
+static PetscErrorCode SurfaceGram(Surface s, PetscInt columns, const PetscReal A[], PetscReal C[]) {
+  PetscReal *scaled, *root;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(s->n * columns, &scaled, s->n, &root));
+  for (PetscInt i = 0; i < s->n; i++) root[i] = PetscSqrtReal(s->sphere->fine.grid.weight[i]);
+  for (PetscInt k = 0; k < columns; k++)
+    for (PetscInt i = 0; i < s->n; i++) scaled[k * s->n + i] = root[i] * A[k * s->n + i];
+  PetscCall(DenseGram(columns, s->n, scaled, C));
+  PetscCall(PetscFree2(scaled, root));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceGradient(Surface s, PetscReal g[]) {
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceProduct(s, s->sphere->fine.grid.weight, 1, s->h, s->sphere->size, s->dh, g));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceBending(Surface s, PetscReal K[]) {
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceGram(s, s->sphere->size, s->dh, K));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceAreaColumns(Surface s, PetscReal A[]) {
+  const SphereTable *fine = &s->sphere->fine;
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceProduct(s, fine->grid.weight, s->sphere->size, s->dJ, s->sphere->count, fine->part[HARMONIC], A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceNormals(Surface s, PetscReal N[]) {
+  PetscReal *normal;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->sphere->size * s->n, &normal));
+  SurfaceCombine(s, HARMONIC, HARMONIC, s->normal, normal);
+  PetscCall(SurfaceGram(s, s->sphere->size, normal, N));
+  PetscCall(PetscFree(normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* L[count][count] = INT max(sigma, 0) grad_s Y_k . grad_s Y_l dA. */
+static PetscErrorCode SurfaceTensionGradients(Surface s, const PetscReal sigma[], PetscReal L[]) {
+  const PetscInt n = s->n, count = s->sphere->count;
+  PetscReal *at, *factor, *block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &at, 3 * n, &factor, count * count, &block));
+  PetscCall(SphereTableValues(&s->sphere->fine, HARMONIC, count, 1, sigma, at));
+  for (PetscInt i = 0; i < n; i++) {
+    const SurfacePoint point = SurfacePointOf(s, i);
+    const PetscReal a = s->sphere->fine.grid.weight[i] * s->J[i] * PetscMax(at[i], 0) / PetscSqr(point.W);
+    factor[i] = a * point.G;
+    factor[n + i] = -a * point.F;
+    factor[2 * n + i] = a * point.E;
+  }
+  PetscCall(PetscArrayzero(L, count * count));
+  for (int q = 0; q < 4; q++) {
+    const PetscReal *A = s->sphere->fine.part[q / 2 ? HARMONIC_P : HARMONIC_T],
+                    *B = s->sphere->fine.part[q % 2 ? HARMONIC_P : HARMONIC_T];
+    PetscCall(SurfaceProduct(s, factor + (q / 2 + q % 2) * n, count, A, count, B, block));
+    for (PetscInt k = 0; k < count * count; k++) L[k] += block[k];
+  }
+  PetscCall(PetscFree3(at, factor, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfacePull(Surface s, const PetscReal sigma[], PetscReal K[]) {
+  const PetscInt n = s->n, count = s->sphere->count, size = s->sphere->size;
+  PetscReal *L, *normal, *projected, *LP;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(count * count, &L, size * n, &normal, size * count, &projected, size * count, &LP));
+  PetscCall(SurfaceTensionGradients(s, sigma, L));
+  SurfaceCombine(s, HARMONIC, HARMONIC, s->normal, normal);
+  PetscCall(SphereTableProject(&s->sphere->fine, count, size, normal, projected));
+  PetscCall(DenseProduct(PETSC_FALSE, count, size, count, L, projected, LP));
+  PetscCall(DenseProduct(PETSC_TRUE, size, size, count, projected, LP, K));
+  PetscCall(PetscFree4(L, normal, projected, LP));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -42,11 +42,11 @@ PETSC_EXTERN void SurfaceCombine(Surface surface, PetscInt first, PetscInt last,
                                  PetscReal out[]);
 
 /* SurfaceGradient - g[size], the gradient of the energy. SurfaceBending - K[size][size] = SUM w dh dh, the
-   Gauss-Newton part of its second derivative. SurfaceAreaRows - A[size][count], A U = INT Y_k div_s U dA. Where
+   Gauss-Newton part of its second derivative. SurfaceAreaColumns - A^T[count][size], A U = INT Y_k div_s U dA. Where
    derivatives have been placed; not collective. */
 PETSC_EXTERN PetscErrorCode SurfaceGradient(Surface surface, PetscReal g[]);
 PETSC_EXTERN PetscErrorCode SurfaceBending(Surface surface, PetscReal K[]);
-PETSC_EXTERN PetscErrorCode SurfaceAreaRows(Surface surface, PetscReal A[]);
+PETSC_EXTERN PetscErrorCode SurfaceAreaColumns(Surface surface, PetscReal A[]);
 
 /* SurfaceNormals - N[size][size], the projection n n. of a field, in coefficients. SurfacePull - K[size][size] = INT
    max(sigma, 0) grad_s(n.) . grad_s(n.) dA, the stiffness by which a tension sigma[count] pulls bumps flat. Not

@@ -44,7 +44,7 @@ void Facts(void) {
     for (PetscInt k = 0; k < 400; k++) TestCall(SpaceStep(axial, 1000));
     const PetscReal still = AxialNormalSpeed(axial);
     CHECK(still < 1e-7, "ratio %g: a body of revolution comes to rest, %.1e", ratio[q], still);
-    SphereUnfold(axial->sphere, axial->state.X, unfolded);
+    SphereUnfold(axial->sphere, 3, axial->state.X, unfolded);
     whole.symmetry = SPHERE_WHOLE;
     TestCall(SpaceCreate(PETSC_COMM_WORLD, &whole, 1, &material, unfolded, &space));
     TestCall(SpaceStart(space));

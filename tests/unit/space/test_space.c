@@ -126,11 +126,11 @@ static void CheckContact(PetscInt p, PetscReal gap, PetscReal W, PetscReal B) {
     TestCall(CrossLayerEnergy(cross, &energy[k]));
   }
   for (PetscInt k = 0; k < 2 * size; k++) G[k] = change[k] = 0;
+  TestCall(CrossLayerAddContact(cross, PETSC_TRUE, change, G));
   for (PetscInt v = 0; v < own; v++) change[v * size] = first + v ? small * one : 0;
-  TestCall(CrossLayerAddRepulsion(cross, G));
   for (PetscInt v = 0; v < own; v++) force[0][first + v] = G[v * size] * one;
   for (PetscInt k = 0; k < 2 * size; k++) G[k] = 0;
-  TestCall(CrossLayerAddStiffness(cross, change, G));
+  TestCall(CrossLayerAddContact(cross, PETSC_FALSE, change, G));
   for (PetscInt v = 0; v < own; v++) force[1][first + v] = G[v * size] * one;
   TestSum(3, force[0]);
   TestSum(3, force[1]);

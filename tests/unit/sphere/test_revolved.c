@@ -20,7 +20,7 @@ static PetscReal *Restricted(Sphere revolved, PetscInt whole, const PetscReal M[
             *unit = TestReals(revolved->size), *column = TestReals(whole);
   for (PetscInt l = 0; l < revolved->size; l++) {
     for (PetscInt k = 0; k < revolved->size; k++) unit[k] = k == l;
-    SphereUnfold(revolved, unit, E);
+    SphereUnfold(revolved, 3, unit, E);
     for (PetscInt k = 0; k < whole; k++) column[k] = 0;
     TestCall(DenseMultAdd(PETSC_FALSE, whole, whole, 1, M, E, column));
     SphereFold(revolved, column, R + l * revolved->size);
@@ -37,7 +37,7 @@ static void CheckRevolved(PetscInt p) {
   TestCall(SurfaceCreate(all, &surface));
   PetscReal *c = RevolvedSurface(one), *whole = TestReals(all->size), *folded = TestReals(one->size),
             *M = TestReals(all->size * all->size), *m = TestReals(one->size * one->size);
-  SphereUnfold(one, c, whole);
+  SphereUnfold(one, 3, c, whole);
   SphereFold(one, whole, folded);
   CHECK(TestFar(one->size, folded, c) < 1e-15, "degree %d: what is unfolded folds back", (int)p);
   TestCall(SurfacePlace(meridian, c, PETSC_TRUE));

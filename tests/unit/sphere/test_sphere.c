@@ -150,10 +150,10 @@ static void CheckGradients(Sphere s) {
   TestCall(SurfaceCreate(s, &surface));
   TestCall(SurfacePlace(surface, c, PETSC_TRUE));
   TestCall(SurfaceGradient(surface, g));
-  TestCall(SurfaceAreaRows(surface, A));
+  TestCall(SurfaceAreaColumns(surface, A));
   for (PetscInt k = 0; k < size; k++) d[k] -= c[k];
   slope[0] = TestProduct(size, g, d);
-  for (PetscInt k = 0; k < size; k++) slope[1] += A[k * s->count] * d[k] * PetscSqrtReal(4 * PETSC_PI);
+  for (PetscInt k = 0; k < size; k++) slope[1] += A[k] * d[k] * PetscSqrtReal(4 * PETSC_PI);
   for (int q = 0; q < 4; q++) {
     for (PetscInt k = 0; k < size; k++) x[k] = c[k] + at[q] * step * d[k];
     TestCall(SurfacePlace(surface, x, PETSC_FALSE));
