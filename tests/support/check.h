@@ -9,19 +9,49 @@ static int check_failed;
    returns nothing, or its result. */
 #define TestCall(...) PetscCallAbort(PETSC_COMM_WORLD, __VA_ARGS__)
 
+/* TestPrint - a text as of printf into text[TEST_TEXT]. */
+#define TEST_TEXT 4096
+#define TestPrint(text, format)                                                                                        \
+  do {                                                                                                                 \
+    va_list arguments;                                                                                                 \
+    va_start(arguments, format);                                                                                       \
+    vsnprintf(text, TEST_TEXT, format, arguments);                                                                     \
+    va_end(arguments);                                                                                                 \
+  } while (0)
+
+/* TestAbout - what the facts that follow are about: it stands before each of them, up to the next call. */
+static char test_subject[TEST_TEXT];
+
+static inline void PETSC_ATTRIBUTE_FORMAT(1, 2) TestAbout(const char format[], ...) {
+  TestPrint(test_subject, format);
+}
+
 /* CHECK - state a fact; collective: it holds when it holds on every rank. */
 #define CHECK(condition, ...) CheckFact((condition) ? PETSC_TRUE : PETSC_FALSE, __VA_ARGS__)
 
 static inline void PETSC_ATTRIBUTE_FORMAT(2, 3) CheckFact(PetscBool holds, const char format[], ...) {
-  char text[1024];
+  char text[TEST_TEXT];
   int here = holds ? 1 : 0, everywhere;
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
+  TestPrint(text, format);
   TestCall(MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));
   if (!everywhere) check_failed++;
-  TestCall(PetscPrintf(PETSC_COMM_WORLD, "%s %s\n", everywhere ? "ok" : "not ok", text));
+  TestCall(PetscPrintf(PETSC_COMM_WORLD, "%s %s%s%s\n", everywhere ? "ok" : "not ok", test_subject,
+                       *test_subject ? ": " : "", text));
+}
+
+/* TestWorse - |x| takes the place of `worst` where it is larger, infinity where x is not a number. */
+static inline void TestWorse(PetscReal *worst, PetscReal x) {
+  if (!(PetscAbsReal(x) <= *worst)) *worst = PetscIsNanReal(x) ? PETSC_INFINITY : PetscAbsReal(x);
+}
+
+/* CheckBelow - state that |x| < bound on every rank, with the largest |x|; collective. */
+static inline void PETSC_ATTRIBUTE_FORMAT(3, 4) CheckBelow(PetscReal x, PetscReal bound, const char format[], ...) {
+  char text[TEST_TEXT];
+  PetscReal most = 0;
+  TestPrint(text, format);
+  TestWorse(&most, x);
+  TestCall(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+  CheckFact(most < bound, "%s, %.1e", text, most);
 }
 
 /* TestKeep - what is to be destroyed, or freed, when the program ends. */
@@ -58,13 +88,19 @@ static inline PetscReal *TestReals(PetscInt n) {
   return x;
 }
 
-/* TestText - a text as of printf. TestScratch - the name of a scratch file. The end of the program frees them. */
-static inline const char *PETSC_ATTRIBUTE_FORMAT(1, 2) TestText(const char format[], ...) {
-  char text[4096], *kept;
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
+/* Scoped - variables of a type that the end of their block destroys, as TestScoped(type, what destroys it) says. */
+#define Scoped(Type) __attribute__((cleanup(Type##Leave))) Type
+#define TestScoped(Type, destroy)                                                                                      \
+  static inline void Type##Leave(Type *x) {                                                                            \
+    TestCall(destroy(x));                                                                                              \
+  }
+
+TestScoped(Mat, MatDestroy)
+
+    /* TestText - a text as of printf. TestScratch - the name of a scratch file. The end of the program frees them. */
+    static inline const char *PETSC_ATTRIBUTE_FORMAT(1, 2) TestText(const char format[], ...) {
+  char text[TEST_TEXT], *kept;
+  TestPrint(text, format);
   TestCall(PetscStrallocpy(text, &kept));
   TestKeep(kept, PETSC_FALSE);
   return kept;
@@ -120,7 +156,7 @@ static inline void TestMost(PetscMPIInt n, PetscReal x[]) {
    |A - A^T| of a matrix [n][n]. Of this rank alone. */
 static inline PetscReal TestFar(PetscInt n, const PetscReal x[], const PetscReal y[]) {
   PetscReal far = 0;
-  for (PetscInt k = 0; k < n; k++) far = PetscMax(far, PetscAbsReal(x[k] - (y ? y[k] : 0)));
+  for (PetscInt k = 0; k < n; k++) TestWorse(&far, x[k] - (y ? y[k] : 0));
   return far;
 }
 
@@ -132,7 +168,7 @@ static inline PetscReal TestProduct(PetscInt n, const PetscReal x[], const Petsc
 
 static inline PetscReal TestAsymmetry(PetscInt n, const PetscReal A[]) {
   PetscReal most = 0;
-  for (PetscInt k = 0; k < n * n; k++) most = PetscMax(most, PetscAbsReal(A[k] - A[k % n * n + k / n]));
+  for (PetscInt k = 0; k < n * n; k++) TestWorse(&most, A[k] - A[k % n * n + k / n]);
   return most;
 }
 
@@ -194,6 +230,13 @@ static inline PetscReal TestRandom(unsigned *state) {
   return 2 * ((*state >> 8) + 0.5) / (1 << 24) - 1;
 }
 
+/* TestRandoms - n of them, which the end of the program frees. */
+static inline PetscReal *TestRandoms(PetscInt n, unsigned *state) {
+  PetscReal *x = TestReals(n);
+  for (PetscInt k = 0; k < n; k++) x[k] = TestRandom(state);
+  return x;
+}
+
 /* TestRandomVec - entry k of the vector is number k of one sequence, whatever the number of ranks. */
 static inline void TestRandomVec(unsigned seed, Vec x) {
   PetscScalar *a = TestArray(x);
@@ -203,4 +246,12 @@ static inline void TestRandomVec(unsigned seed, Vec x) {
   TestCall(VecGetOwnershipRange(x, &first, NULL));
   for (PetscInt i = 0; i < first; i++) (void)TestRandom(&state);
   for (PetscInt i = 0; i < n; i++) a[i] = TestRandom(&state);
+}
+
+/* TestRandomVecs - vectors up to a NULL, by seeds that follow one another. */
+static inline void TestRandomVecs(unsigned seed, Vec x, ...) {
+  va_list list;
+  va_start(list, x);
+  for (; x; x = va_arg(list, Vec)) TestRandomVec(seed++, x);
+  va_end(list);
 }

@@ -12,7 +12,10 @@
   "-fluid_inertia unsteady "
 
 /* What scenes of tests have in common. */
+#define CHANNEL "-domain_bc_x periodic "
 #define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
+#define SQUARE "-domain_box -1,1,-1,1 -domain_cells 48,48 "
+#define OBLONG "-domain_box -1,1,-1,1.1860465116279069 -domain_cells 43,47 "
 #define EXACT "-coupling_near_field exact -membrane_derivative spectral -vesicle_allow_close_markers "
 
 /* TestScene - the scene of PAPER_MEMBRANE and an options text, which replaces what earlier scenes of the same program
@@ -108,15 +111,25 @@ static inline void TestMarkerVecs(Layout layout, PetscInt each, ...) {
   TestCall(VecDestroy(&x));
 }
 
-/* TestFill - entry (i, j) of the fields first .. last of x, a velocity (FIELD_U to FIELD_V) or a pressure, becomes
-   value(ctx, field, i, j), j counting the rows of all ranks. Not collective. */
-typedef PetscReal TestValue(const void *ctx, Field field, PetscInt i, PetscInt j);
+/* TestFill - entries of the fields first .. last of x, a velocity (FIELD_U to FIELD_V) or a pressure, become
+   value(ctx, field, place). Not collective. */
+typedef PetscReal TestValue(const void *ctx, Field field, const PetscReal X[2]);
 static inline void TestFill(Grid g, Field first, Field last, TestValue value, const void *ctx, Vec x) {
   PetscScalar *a = TestArray(x);
+  PetscReal X[2];
   for (int f = first; f <= (int)last; f++)
-    for (PetscInt j = 0; j < g->rows[f]; j++)
-      for (PetscInt i = 0; i < g->columns[f]; i++)
-        a[GridRowStart(g, (Field)f, j) + i] = value(ctx, (Field)f, i, j + g->first);
+    for (PetscInt k = 0; k < g->rows[f] * g->columns[f]; k++) {
+      GridPosition(g, (Field)f, k % g->columns[f], k / g->columns[f] + g->first, X);
+      a[GridRowStart(g, (Field)f, 0) + k] = value(ctx, (Field)f, X);
+    }
+}
+
+/* TestWeight - phi(x) of a kernel: the weight at grid point 0 of a marker at x (cells). */
+static inline PetscReal TestWeight(KernelWeights weights, PetscReal x) {
+  PetscReal w[KERNEL_MAX_POINTS];
+  PetscInt first;
+  const PetscInt n = weights(x, &first, w);
+  return first <= 0 && -first < n ? w[-first] : 0;
 }
 
 /* TestWorldPlace - the coupling at the initial markers for the time coefficient a0. */

@@ -1,104 +1,98 @@
 /* Convection: its discrete form keeps energy and momentum and is of second order; Navier-Stokes flow against a vortex
-   carried by a stream, and against manufactured solutions. Quasi-steady flow: the limit of a slow step. */
+   carried by a stream, and against manufactured solutions. */
 #include "facts.h"
 #include "krylov/solver.h"
 #include "fluid/stokes/convection.h"
 #include "fluid/stokes/stokes.h"
 #include <dlfcn.h>
 
+TestScoped(Convection, ConvectionDestroy)
+
 #define NU 0.05
 
-typedef void (*Exact)(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]); /* u', v', p */
+    typedef void Exact(const PetscReal at[3], PetscReal value[3]); /* u', v', p at x, y, t */
 
-/* u' and p of a stream function psi = amplitude P(x) Q(y) that is odd about walls after one derivative. */
-static void Flow2(PetscReal amplitude, const PetscReal P[2], const PetscReal Q[2], PetscReal value[3]) {
-  value[0] = amplitude * P[0] * Q[1];
-  value[1] = -amplitude * P[1] * Q[0];
+/* u' and p = cos(pi x) cos(pi y) of a stream function psi = amplitude P(x) Q(y) that is odd about walls after one
+   derivative. */
+static void Flow2(const PetscReal at[3], PetscReal amplitude, const PetscReal P[2], const PetscReal Q[2],
+                  PetscReal value[3]) {
+  const PetscReal now = amplitude * (1 + 0.5 * PetscSinReal(2 * at[2]));
+  value[0] = now * P[0] * Q[1];
+  value[1] = -now * P[1] * Q[0];
+  value[2] = PetscCosReal(PETSC_PI * at[0]) * PetscCosReal(PETSC_PI * at[1]);
 }
 
-static void InChannel(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]) {
-  const PetscReal phase = PETSC_PI * x - t, half = PETSC_PI * (y + 1) / 2;
-  const PetscReal P[2] = {PetscSinReal(phase), PETSC_PI * PetscCosReal(phase)};
-  const PetscReal Q[2] = {PetscSqr(PetscSinReal(half)), PETSC_PI / 2 * PetscSinReal(2 * half)};
-  Flow2(0.3 * (1 + 0.5 * PetscSinReal(2 * t)), P, Q, value);
-  value[2] = PetscCosReal(PETSC_PI * x) * PetscCosReal(PETSC_PI * y);
+/* A function that is flat at walls x = +-1, and its derivative. */
+static void Flat(PetscReal x, PetscReal F[2]) {
+  F[0] = PetscSqr(PetscSinReal(PETSC_PI * (x + 1) / 2));
+  F[1] = PETSC_PI / 2 * PetscSinReal(PETSC_PI * (x + 1));
 }
 
-static void InBox(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]) {
-  const PetscReal halves[2] = {PETSC_PI * (x + 1) / 2, PETSC_PI * (y + 1) / 2};
-  PetscReal F[2][2];
-  for (int d = 0; d < 2; d++) {
-    F[d][0] = PetscSqr(PetscSinReal(halves[d]));
-    F[d][1] = PETSC_PI / 2 * PetscSinReal(2 * halves[d]);
-  }
-  Flow2(0.4 * (1 + 0.5 * PetscSinReal(2 * t)), F[0], F[1], value);
-  value[2] = PetscCosReal(PETSC_PI * x) * PetscCosReal(PETSC_PI * y);
+static void InChannel(const PetscReal at[3], PetscReal value[3]) {
+  const PetscReal phase = PETSC_PI * at[0] - at[2], P[2] = {PetscSinReal(phase), PETSC_PI * PetscCosReal(phase)};
+  PetscReal Q[2];
+  Flat(at[1], Q);
+  Flow2(at, 0.3, P, Q, value);
+}
+
+static void InBox(const PetscReal at[3], PetscReal value[3]) {
+  PetscReal P[2], Q[2];
+  Flat(at[0], P);
+  Flat(at[1], Q);
+  Flow2(at, 0.4, P, Q, value);
 }
 
 /* Vortices of wave number pi, carried by a stream (1, 0) and decaying: an exact solution of Navier-Stokes. */
-static void Carried(PetscReal x, PetscReal y, PetscReal t, PetscReal value[3]) {
-  const PetscReal a = PETSC_PI * (x - t), b = PETSC_PI * y, decay = PetscExpReal(-2 * NU * PETSC_PI * PETSC_PI * t);
+static void Carried(const PetscReal at[3], PetscReal value[3]) {
+  const PetscReal a = PETSC_PI * (at[0] - at[2]), b = PETSC_PI * at[1];
+  const PetscReal decay = PetscExpReal(-2 * NU * PETSC_PI * PETSC_PI * at[2]);
   value[0] = decay * PetscSinReal(a) * PetscCosReal(b);
   value[1] = -decay * PetscCosReal(a) * PetscSinReal(b);
   value[2] = decay * decay * (PetscCosReal(2 * a) + PetscCosReal(2 * b)) / 4;
 }
 
-/* Derivative of component c: axis 0 x, 1 y, 2 t; by differences of fourth order. */
-static PetscReal First(Exact f, int c, int axis, const PetscReal at[3]) {
-  const PetscReal d = 1e-3, weight[2] = {8, -1};
+/* Derivative number 1 or 2 of component c along axis 0 x, 1 y, 2 t; by differences of fourth order. */
+static PetscReal Derivative(Exact *f, int c, int axis, int number, const PetscReal at[3]) {
+  static const PetscReal weight[2][5] = {{1. / 12, -2. / 3, 0, 2. / 3, -1. / 12},
+                                         {-1. / 12, 4. / 3, -5. / 2, 4. / 3, -1. / 12}};
+  const PetscReal step = 1e-3 * number;
   PetscReal sum = 0, value[3];
-  for (int k = 1; k <= 2; k++)
-    for (int side = -1; side <= 1; side += 2) {
-      PetscReal q[3] = {at[0], at[1], at[2]};
-      q[axis] += side * k * d;
-      f(q[0], q[1], q[2], value);
-      sum += side * weight[k - 1] * value[c] / (12 * d);
-    }
-  return sum;
+  for (int k = 0; k < 5; k++) {
+    PetscReal q[3] = {at[0], at[1], at[2]};
+    q[axis] += (k - 2) * step;
+    f(q, value);
+    sum += weight[number - 1][k] * value[c];
+  }
+  return sum / PetscPowRealInt(step, number);
 }
 
-static PetscReal Laplacian(Exact f, int c, const PetscReal at[3]) {
-  const PetscReal d = 2e-3, weight[2] = {16, -1};
-  PetscReal sum = 0, value[3];
-  f(at[0], at[1], at[2], value);
-  sum = -60 * value[c];
-  for (int axis = 0; axis < 2; axis++)
-    for (int k = 1; k <= 2; k++)
-      for (int side = -1; side <= 1; side += 2) {
-        PetscReal q[3] = {at[0], at[1], at[2]};
-        q[axis] += side * k * d;
-        f(q[0], q[1], q[2], value);
-        sum += weight[k - 1] * value[c];
-      }
-  return sum / (12 * d * d);
-}
-
-/* N of the exact flow at a point. */
-static PetscReal ExactConvection(const Flow *flow, Exact f, int c, const PetscReal at[3]) {
-  PetscReal value[3], background[2], gradient[2][2], sum = 0;
-  f(at[0], at[1], at[2], value);
-  FlowVelocity(flow, 0, at[0], at[1], background);
-  FlowGradient(flow, at[1], gradient);
-  for (int b = 0; b < 2; b++) sum += (value[b] + background[b]) * First(f, c, b, at) + value[b] * gradient[c][b];
-  return sum;
-}
-
+/* The exact flow's values, its convection N, or the force that upholds it. */
 typedef enum { VALUE, CONVECTION, FORCE } What;
 
-/* A velocity vector of the exact flow's values, convection, or the force that upholds it. */
-static void Sample(Scene scene, Grid g, Exact f, PetscReal t, What what, Vec w) {
-  PetscReal at[3] = {0, 0, t}, value[3];
-  PetscScalar *a = TestArray(w);
-  for (int c = 0; c < 2; c++)
-    for (PetscInt j = 0; j < g->rows[c]; j++)
-      for (PetscInt i = 0; i < g->columns[c]; i++) {
-        PetscScalar *entry = a + GridRowStart(g, (Field)c, j) + i;
-        GridPosition(g, (Field)c, i, j + g->first, at);
-        f(at[0], at[1], t, value);
-        *entry = value[c];
-        if (what != VALUE) *entry = ExactConvection(&scene->flow, f, c, at);
-        if (what == FORCE) *entry += First(f, c, 2, at) + First(f, 2, c, at) - scene->fluid.nu * Laplacian(f, c, at);
-      }
+typedef struct {
+  Scene scene;
+  Exact *flow;
+  PetscReal t;
+  What what;
+} Sampling;
+
+static PetscReal SamplingValue(const void *ctx, Field c, const PetscReal X[2]) {
+  const Sampling *s = (const Sampling *)ctx;
+  const PetscReal at[3] = {X[0], X[1], s->t};
+  PetscReal value[3], background[2], gradient[2][2], sum = 0;
+  s->flow(at, value);
+  if (s->what == VALUE) return value[c];
+  FlowVelocity(&s->scene->flow, 0, at[0], at[1], background);
+  FlowGradient(&s->scene->flow, at[1], gradient);
+  for (int b = 0; b < 2; b++)
+    sum += (value[b] + background[b]) * Derivative(s->flow, c, b, 1, at) + value[b] * gradient[c][b];
+  if (s->what == CONVECTION) return sum;
+  for (int b = 0; b < 2; b++) sum -= s->scene->fluid.nu * Derivative(s->flow, c, b, 2, at);
+  return sum + Derivative(s->flow, c, 2, 1, at) + Derivative(s->flow, 2, c, 1, at);
+}
+
+static void Sample(const TestWorld *r, Exact *flow, PetscReal t, What what, Vec w) {
+  TestFill(r->fluid->grid, FIELD_U, FIELD_V, SamplingValue, &(Sampling){r->scene, flow, t, what}, w);
 }
 
 /* A scheme without vesicles, of n cells across, options after the common ones. */
@@ -121,41 +115,41 @@ PetscErrorCode MobilityFields(Mobility m, const Forcing *f, Vec u, Vec p) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Root mean square velocity error at time 0.4, from the exact start; forced: with the force that upholds f. w: copy of
-   the end state, or NULL. */
-static PetscReal Error(const char options[], Exact f, PetscBool forced, PetscInt n, PetscInt steps, Vec *w) {
+/* Root mean square velocity error at time 0.4, from the exact start, and the end state where w is given; forced: with
+   the force that upholds f. */
+static PetscReal Error(const char options[], Exact *f, PetscBool forced, PetscInt n, PetscInt steps, Vec *w) {
   const PetscReal t_end = 0.4, dt = t_end / steps;
   ScopedWorld r;
-  Vec exact;
+  Vec exact, end;
   RunCreate(options, n, dt, &r);
-  TestVecs(r.scheme->state.w, &exact, NULL);
-  Sample(r.scene, r.fluid->grid, f, 0, VALUE, r.scheme->state.w);
+  end = r.scheme->state.w;
+  TestVecs(end, &exact, NULL);
+  Sample(&r, f, 0, VALUE, end);
   if (forced) TestCall(VecDuplicate(exact, &body_force));
   for (PetscInt k = 1; k <= steps; k++) {
-    if (forced) Sample(r.scene, r.fluid->grid, f, k * dt, FORCE, body_force);
+    if (forced) Sample(&r, f, k * dt, FORCE, body_force);
     TestCall(SchemeStep(r.scheme, PETSC_MAX_REAL));
     PetscCheckAbort(!*r.scheme->report.failure, PETSC_COMM_WORLD, PETSC_ERR_LIB, "%s", r.scheme->report.failure);
   }
-  Sample(r.scene, r.fluid->grid, f, t_end, VALUE, exact);
-  TestCall(VecAYPX(exact, -1, r.scheme->state.w));
-  const PetscReal error = TestNorm(NORM_2, exact) * r.fluid->grid->h / 2; /* the box is 2 x 2 */
-  if (w) TestVecs(exact, w, NULL);
-  if (w) TestCall(VecCopy(r.scheme->state.w, *w));
   TestCall(VecDestroy(&body_force));
-  return error;
+  if (w) TestVecs(end, w, NULL);
+  if (w) TestCall(VecCopy(end, *w));
+  Sample(&r, f, t_end, VALUE, exact);
+  TestCall(VecAXPY(exact, -1, end));
+  return TestNorm(NORM_2, exact) * r.fluid->grid->h / 2; /* the box is 2 x 2 */
 }
 
-#define PERIODIC "-domain_bc_x periodic -domain_bc_y periodic "
 #define STREAM "-flow_type poiseuille -flow_half_width 1e7 "
-#define CHANNEL "-domain_bc_x periodic -flow_type poiseuille -flow_half_width 1 "
+#define POISEUILLE CHANNEL "-flow_type poiseuille -flow_half_width 1 "
 
 /* u.N(u) = 0 to rounding for any velocity, divergence or not, on any carrying stream that walls do not cut; and for a
    divergence-free one in a periodic box N adds up to zero. */
 static void CheckConservation(const char name[], const char options[]) {
   ScopedWorld r;
-  Convection c;
+  Scoped(Convection) c;
   Vec w, N;
   PetscReal size = 0;
+  TestAbout("%s", name);
   RunCreate(options, 24, 1e-6, &r);
   TestCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
   TestVecs(r.scheme->state.w, &w, &N, NULL);
@@ -165,40 +159,35 @@ static void CheckConservation(const char name[], const char options[]) {
     TestCall(VecSet(N, 0));
     TestCall(ConvectionAdd(c, 1, w, &(Forcing){.values = N}));
     size = TestNorm(NORM_2, N);
-    const PetscReal product = TestDot(w, N) / (TestNorm(NORM_2, w) * size);
-    CHECK(PetscAbsReal(product) <= 1e-12 && size > 0,
-          "%s, %s velocity: convection keeps the energy, u.N over |u| |N| = %.1e", name,
-          free ? "divergence-free" : "random", product);
+    CHECK(size > 0, "there is convection");
+    CheckBelow(TestDot(w, N) / (TestNorm(NORM_2, w) * size), 1e-12, "%s velocity: convection keeps the energy, u.N",
+               free ? "divergence-free" : "random");
   }
-  const PetscScalar sum = TestTotal(N);
   if (!r.fluid->grid->wall[0] && !r.fluid->grid->wall[1])
-    CHECK(PetscAbsReal(sum) <= 1e-11 * size * 24, "%s: convection keeps the momentum, sum of N over its size %.1e",
-          name, sum / (size * 24));
-  TestCall(ConvectionDestroy(&c));
+    CheckBelow(TestTotal(N) / (size * 24), 1e-11, "convection keeps the momentum, sum of N");
 }
 
 /* N against its formula, second order. */
-static void CheckConsistency(const char name[], const char options[], Exact f) {
+static void CheckConsistency(const char name[], const char options[], Exact *f) {
   PetscReal error[2];
   for (int k = 0; k < 2; k++) {
     ScopedWorld r;
-    Convection c;
+    Scoped(Convection) c;
     Vec w, N;
     RunCreate(options, 24 << k, 1e-6, &r);
     TestCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
     TestVecs(r.scheme->state.w, &w, &N, NULL);
-    Sample(r.scene, r.fluid->grid, f, 0.3, VALUE, w);
-    Sample(r.scene, r.fluid->grid, f, 0.3, CONVECTION, N);
+    Sample(&r, f, 0.3, VALUE, w);
+    Sample(&r, f, 0.3, CONVECTION, N);
     TestCall(ConvectionAdd(c, -1, w, &(Forcing){.values = N}));
     error[k] = TestNorm(NORM_2, N) * r.fluid->grid->h / 2;
-    TestCall(ConvectionDestroy(&c));
   }
   CHECK(error[0] / error[1] > 3.6 && error[0] < 0.1, "%s: convection is of second order, error %.1e and %.1e", name,
         error[0], error[1]);
 }
 
 /* Second order when h and dt go down together, and in dt alone at fixed h. */
-static void CheckOrder(const char name[], const char options[], Exact f, PetscBool forced) {
+static void CheckOrder(const char name[], const char options[], Exact *f, PetscBool forced) {
   PetscReal error[2], apart[2];
   Vec w[3];
   for (int k = 0; k < 2; k++) error[k] = Error(options, f, forced, 16 << k, 16 << k, NULL);
@@ -221,66 +210,36 @@ static void CheckUnsteady(void) {
         without);
 }
 
-/* Stokes() at alpha = 0 is the limit of small alpha, and in a periodic box has no mean. */
-static void CheckQuasiSteady(const char name[], const char options[]) {
-  const char *const inertia[] = {"-fluid_inertia none", "-fluid_inertia unsteady"};
-  Vec w[2], p[2], force;
-  for (int k = 0; k < 2; k++) {
-    ScopedWorld r;
-    RunCreate(TestText("%s %s", options, inertia[k]), 24, 1, &r);
-    TestCall(FluidSetTimeCoefficient(r.fluid, 1e-7));
-    if (!k) CHECK(r.fluid->alpha == 0 && r.fluid->a0 > 0, "%s: no inertia in quasi-steady flow", name);
-    TestVecs(r.scheme->state.w, &force, &w[k], NULL);
-    TestVecs(r.scheme->state.p, &p[k], NULL);
-    Sample(r.scene, r.fluid->grid, InBox, 0, FORCE, force);
-    if (!r.fluid->grid->wall[0] && !r.fluid->grid->wall[1]) TestCall(FluidRemoveMean(r.fluid, force));
-    TestCall(StokesSolve(TestWorldStokes(&r), force, NULL, w[k], p[k]));
-  }
-  if (strstr(options, "bc_y"))
-    CHECK(PetscAbsReal(TestTotal(w[0])) <= 1e-10 * TestNorm(NORM_2, w[0]), "%s: no mean flow", name);
-  PetscReal apart = TestApart(NORM_2, w[1], w[0]);
-  CHECK(apart <= 1e-4 && apart > 0, "%s: velocity is the limit of small inertia, %.1e apart", name, apart);
-  apart = TestApart(NORM_2, p[1], p[0]);
-  CHECK(apart <= 1e-4, "%s: pressure is the limit of small inertia, %.1e apart", name, apart);
-}
-
 /* One entry of a velocity that is not a number, on one rank, is found by all ranks: the speed decides whether a step is
    taken. Nothing is left of it in a velocity of finite entries. */
 static void CheckSpeed(void) {
   ScopedWorld r;
-  Convection c;
+  Scoped(Convection) c;
   PetscReal speed;
-  PetscMPIInt bad;
   RunCreate(PERIODIC, 24, 1e-6, &r);
   TestCall(ConvectionCreate(&r.scene->flow, r.fluid, &c));
   for (PetscMPIInt rank = 0; rank < r.fluid->grid->size; rank++) {
     TestCall(VecSet(r.scheme->state.w, 0.5));
     TestCall(ConvectionSpeed(c, r.scheme->state.w, &speed));
-    CHECK(PetscAbsReal(speed - 1) < 1e-15, "speed |u| + |v| of a uniform flow: %g", speed);
+    CheckBelow(speed - 1, 1e-15, "speed |u| + |v| of a uniform flow");
     PetscScalar *a = TestArray(r.scheme->state.w);
     if (r.fluid->grid->rank == rank) a[30] = NAN;
     TestCall(ConvectionSpeed(c, r.scheme->state.w, &speed));
-    bad = PetscIsNanReal(speed) ? 1 : 0;
-    TestCall(MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_SUM, r.fluid->grid->comm));
-    CHECK(bad == r.fluid->grid->size, "a velocity that is not a number on rank %d is seen by %d ranks", rank, bad);
+    CHECK(PetscIsNanReal(speed), "a velocity that is not a number on rank %d is seen by all", rank);
   }
-  TestCall(ConvectionDestroy(&c));
 }
 
 void Facts(void) {
   CheckConservation("periodic", PERIODIC);
   CheckConservation("periodic with a stream", PERIODIC STREAM);
-  CheckConservation("channel", "-domain_bc_x periodic");
+  CheckConservation("channel", CHANNEL);
   CheckConservation("walls", "");
-  CheckConsistency("poiseuille in a channel", CHANNEL, InChannel);
+  CheckConsistency("poiseuille in a channel", POISEUILLE, InChannel);
   CheckConsistency("shear between walls", "-flow_type shear", InBox);
   CheckConsistency("extension between walls", "-flow_type extension", InBox);
   CheckOrder("vortices in a stream", PERIODIC STREAM, Carried, PETSC_FALSE);
-  CheckOrder("manufactured, poiseuille in a channel", CHANNEL, InChannel, PETSC_TRUE);
+  CheckOrder("manufactured, poiseuille in a channel", POISEUILLE, InChannel, PETSC_TRUE);
   CheckOrder("manufactured, shear between walls", "-flow_type shear", InBox, PETSC_TRUE);
   CheckSpeed();
   CheckUnsteady();
-  CheckQuasiSteady("periodic box", PERIODIC);
-  CheckQuasiSteady("channel", "-domain_bc_x periodic");
-  CheckQuasiSteady("walls", "");
 }
