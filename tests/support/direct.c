@@ -5,30 +5,25 @@
 #include "problem/contrast.h"
 
 void DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value) {
-  if (value == 0) return;
-  if (d->count == d->room) {
-    d->room = 2 * d->room + 1000;
-    TestCall(PetscRealloc(d->room * sizeof(*d->row), &d->row));
-    TestCall(PetscRealloc(d->room * sizeof(*d->column), &d->column));
-    TestCall(PetscRealloc(d->room * sizeof(*d->value), &d->value));
-  }
-  d->row[d->count] = row;
-  d->column[d->count] = column;
-  d->value[d->count++] = value;
+  if (value != 0) TestCall(MatSetValue(d->A, row, column, value, ADD_VALUES));
 }
 
+/* Rows of the near field have an entry a marker, those of mean velocities one a face. */
 static void Begin(Coupling c, Direct *d) {
-  const PetscInt M = c->membrane->layout->M;
+  const PetscInt M = c->membrane->layout->M, all = 2 * c->bodies->layout->M;
   *d = (Direct){.c = c, .fluid = c->fluid, .grid = c->fluid->grid};
   const PetscInt size[PARTS] = {[PART_SIGMA] = M,
                                 [PART_V] = 2 * M,
                                 [PART_F] = 2 * M,
-                                [PART_SOLID] = 2 * (c->bodies->layout->M - M),
+                                [PART_SOLID] = all - 2 * M,
                                 [PART_JUMP] = c->mobility->contrast ? 2 * M : 0,
                                 [PART_AREA] = LawAimsAreas(c->law) ? c->membrane->layout->bodies : 0,
                                 [PART_MEAN] = DirectMeans(d)};
   for (int k = 0; k < PARTS; k++)
     d->first[k + 1] = d->first[k] + (k <= FIELD_P ? d->grid->columns[k] * d->grid->rows[k] : size[k]);
+  const PetscInt n = d->first[PARTS];
+  TestCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 2 * all + 100, NULL, &d->A));
+  TestCall(MatSetOption(d->A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
 }
 
 /* H, G and G^T. */
@@ -140,22 +135,15 @@ static void AddNearField(Direct *d) {
         DirectAdd(d, solid + i, solid + j, h2 * o->beta * o->N[i] * o->N[j]);
 }
 
-static void Assemble(Direct *d, Mat *A) {
-  const PetscInt n = d->first[PARTS];
+static void Assemble(Direct *d) {
   AddFluid(d);
   AddInterpolation(d);
   AddSprings(d);
   for (PetscInt v = 0; v < d->c->membrane->layout->bodies; v++) AddVesicle(d, v);
   AddNearField(d);
   if (d->c->mobility->contrast) DirectAddContrast(d);
-  TestCall(MatCreate(PETSC_COMM_SELF, A));
-  TestCall(MatSetSizes(*A, n, n, n, n));
-  TestCall(MatSetType(*A, MATSEQAIJ));
-  TestCall(MatSetPreallocationCOO(*A, d->count, d->row, d->column));
-  TestCall(MatSetValuesCOO(*A, d->value, INSERT_VALUES));
-  TestCall(PetscFree(d->row));
-  TestCall(PetscFree(d->column));
-  TestCall(PetscFree(d->value));
+  TestCall(MatAssemblyBegin(d->A, MAT_FINAL_ASSEMBLY));
+  TestCall(MatAssemblyEnd(d->A, MAT_FINAL_ASSEMBLY));
 }
 
 /* Factors of the rows (side 0) and of the unknowns (side 1) that make all entries numbers without a unit, velocities
@@ -171,15 +159,13 @@ static void Factors(const Direct *d, int side, Vec factors) {
 
 /* n numbers of a vector from `first` on. */
 static void Take(Vec from, PetscInt first, PetscInt n, PetscScalar to[]) {
-  const PetscScalar *a = TestArray(from);
-  TestCall(PetscArraycpy(to, a + first, n));
+  TestCall(PetscArraycpy(to, TestArray(from) + first, n));
 }
 
 static void Give(const Direct *d, Vec x, int part, Vec to) {
   PetscInt n;
   TestCall(VecGetLocalSize(to, &n));
-  PetscScalar *a = TestArray(to);
-  Take(x, d->first[part], n, a);
+  Take(x, d->first[part], n, TestArray(to));
 }
 
 /* The near field of the forces that are known; of a contrast's motion that is known -B in k, the dipoles in f and the
@@ -232,18 +218,19 @@ static void SolveLU(Mat A, Vec b, Vec x) {
 
 void DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
   Direct d;
-  Mat A;
   Vec b, x, rows, columns;
   Begin(c, &d);
-  Assemble(&d, &A);
-  TestCall(MatCreateVecs(A, &x, &b));
-  TestCall(MatCreateVecs(A, &columns, &rows));
+  Assemble(&d);
+  TestCall(MatCreateVecs(d.A, &x, &b));
+  TestKeep(x, PETSC_TRUE);
+  TestKeep(b, PETSC_TRUE);
+  TestVecs(x, &rows, &columns, NULL);
   Factors(&d, 0, rows);
   Factors(&d, 1, columns);
-  TestCall(MatDiagonalScale(A, rows, columns));
+  TestCall(MatDiagonalScale(d.A, rows, columns));
   RightHandSide(&d, q, b);
   TestCall(VecPointwiseMult(b, b, rows));
-  SolveLU(A, b, x);
+  SolveLU(d.A, b, x);
   TestCall(VecPointwiseMult(x, x, columns));
   Give(&d, x, FIELD_U, w);
   Give(&d, x, FIELD_P, p);
@@ -252,7 +239,5 @@ void DirectSolve(Coupling c, const CoupledProblem *q, Vec w, Vec p) {
   Give(&d, x, PART_V, q->V);
   if (q->solid) Give(&d, x, PART_SOLID, q->solid);
   if (q->solid) TestCall(VecScale(q->solid, PetscSqr(d.grid->h)));
-  TestCall(MatDestroy(&A));
-  Vec *all[] = {&b, &x, &rows, &columns};
-  for (int k = 0; k < 4; k++) TestCall(VecDestroy(all[k]));
+  TestCall(MatDestroy(&d.A));
 }

@@ -22,17 +22,16 @@ typedef enum {
   PARTS
 } DirectPart;
 
-/* The matrix while it is assembled: entries that are summed where they have the same place. */
+/* The matrix while it is assembled. */
 typedef struct {
   Coupling c;
   Fluid fluid;
   Grid grid;
   PetscInt first[PARTS + 1]; /* index of the first unknown of each part, and of its row */
-  PetscInt count, room;      /* entries */
-  PetscInt *row, *column;
-  PetscScalar *value;
+  Mat A;
 } Direct;
 
+/* DirectAdd - a value on top of what the entry has. */
 void DirectAdd(Direct *d, PetscInt row, PetscInt column, PetscReal value);
 
 /* DirectAddContrast - B V in the rows of V, the double layer in those of obstacles, J - Q (1 - ratio) (V +
