@@ -3,26 +3,24 @@
 #include "curve/crossing.h"
 
 typedef struct {
-  PetscInt pairs, repeated;
-  char *seen; /* [n][n] */
-  PetscInt n;
+  PetscInt n, pairs, repeated;
+  PetscReal *seen; /* [n][n] */
 } Count;
 
 static PetscBool CountPair(void *context, PetscInt i, PetscInt j, const PetscReal d[2]) {
   Count *c = (Count *)context;
   c->pairs++;
-  if (c->seen[i * c->n + j]++) c->repeated++;
+  c->repeated += c->seen[i * c->n + j]++ > 0;
   return PETSC_FALSE;
 }
 
 static void CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, PetscReal reach) {
   const PetscReal period[2] = {period_x, period_y};
-  Count c = {.n = n};
+  Count c = {.n = n, .seen = TestReals(n * n)}, again = {.n = n, .seen = TestReals(n * n)};
   PetscInt wanted = 0;
   unsigned seed = 7;
-  PetscReal *X = TestReals(2 * n);
-  TestCall(PetscCalloc1(n * n, &c.seen));
-  for (PetscInt k = 0; k < 2 * n; k++) X[k] = 3 * TestRandom(&seed); /* some are outside of a period */
+  PetscReal *X = TestRandoms(2 * n, &seed);
+  for (PetscInt k = 0; k < 2 * n; k++) X[k] *= 3; /* some are outside of a period */
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = i + 1; j < n; j++) {
       PetscReal square = 0;
@@ -36,14 +34,11 @@ static void CheckPairs(PetscInt n, PetscReal period_x, PetscReal period_y, Petsc
   TestCall(PairsWithin(n, X, NULL, period, reach, CountPair, &c));
   CHECK(c.pairs == wanted && !c.repeated, "%d points, periods %g and %g: %d pairs nearer than %g, %d by the cells",
         (int)n, period_x, period_y, (int)wanted, reach, (int)c.pairs);
-  TestCall(PetscArrayzero(c.seen, n * n));
-  c.pairs = 0;
   for (int half = 0; half < 2; half++) {
     const PetscInt part[2] = {half * (n / 3), half ? n : n / 3};
-    TestCall(PairsWithin(n, X, part, period, reach, CountPair, &c));
+    TestCall(PairsWithin(n, X, part, period, reach, CountPair, &again));
   }
-  CHECK(c.pairs == wanted && !c.repeated, "%d points in two parts: %d pairs", (int)n, (int)c.pairs);
-  TestCall(PetscFree(c.seen));
+  CHECK(again.pairs == wanted && !again.repeated, "%d points in two parts: %d pairs", (int)n, (int)again.pairs);
 }
 
 #define POINTS 40
@@ -62,57 +57,49 @@ static void Place(const Loop *loop, PetscReal away, PetscReal X[]) {
   }
 }
 
-static void CheckLoops(const char what[], const Loop loop[2], PetscReal period_x, PetscBool smooth, PetscInt first,
-                       PetscInt second) {
-  const PetscInt start[3] = {0, POINTS, 2 * POINTS};
+/* Which of n loops cross, from the third on 9 farther right. */
+static void CheckLoops(const char what[], PetscInt n, const Loop loop[], PetscReal period_x, PetscBool smooth,
+                       PetscInt first, PetscInt second) {
+  const PetscInt start[] = {0, POINTS, 2 * POINTS, 3 * POINTS, 4 * POINTS};
   const PetscReal period[2] = {period_x, 0};
-  PetscReal X[4 * POINTS];
+  PetscReal X[8 * POINTS];
   PetscInt pair[2];
-  for (int v = 0; v < 2; v++) Place(&loop[v], 0, X + 2 * v * POINTS);
-  const CurveSet set = {2, 2, start, NULL, X, period, smooth};
+  for (PetscInt v = 0; v < n; v++) Place(&loop[v], v < 2 ? 0 : 9, X + 2 * v * POINTS);
+  const CurveSet set = {n, n, start, NULL, X, period, smooth};
   TestCall(CurvesCross(&set, pair));
   const PetscInt low = PetscMin(pair[0], pair[1]), high = PetscMax(pair[0], pair[1]);
   CHECK(low == first && high == second, "%s, %s: %d and %d cross", what, smooth ? "curves" : "polygons", (int)low,
         (int)high);
 }
 
-/* The tip in the hollow, first in order, must not hide two others that cross. */
-static void CheckBehind(const Loop nested[2], const Loop over[2]) {
-  const PetscInt start[5] = {0, POINTS, 2 * POINTS, 3 * POINTS, 4 * POINTS};
-  const PetscReal period[2] = {0, 0};
-  PetscReal X[8 * POINTS];
-  PetscInt pair[2];
-  for (int v = 0; v < 4; v++) Place(v < 2 ? &nested[v] : &over[v - 2], v < 2 ? 0 : 9, X + 2 * v * POINTS);
-  const CurveSet set = {4, 4, start, NULL, X, period, PETSC_TRUE};
-  TestCall(CurvesCross(&set, pair));
-  CHECK(PetscMin(pair[0], pair[1]) == 2 && PetscMax(pair[0], pair[1]) == 3, "behind a tip in a hollow: %d and %d cross",
-        (int)pair[0], (int)pair[1]);
-}
+#define ELLIPSE                                                                                                        \
+  { 0, 0, 1, 0.5, 0, 1 }
 
 void Facts(void) {
-  static const Loop apart[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 1.001, 1, 0.5, 0, 1}},
-                    over[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0.99, 1, 0.5, 0, 1}},
-                    inside[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 0.5, 0.2, 0, 1}},
-                    eight[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 3, 1, 0.5, 0.1, 2}},
-                    same[2] = {{0, 0, 1, 0.5, 0, 1}, {0, 0, 1, 0.5, 0, 1}},
-                    seam[2] = {{0, 0, 1, 0.5, 0, 1}, {2.5, 0, 1, 0.5, 0, 1}},
-                    /* the right-hand one's tip in the other's hollow end: chords of the hollow cut into the tip */
-      nested[2] = {{0, 0, 0.4, 1, -0.3, 1}, {0.7105, 0.0785, 0.6, 0.01, 0, 1}};
+  /* the tip of the second of four in the hollow end of the first: chords of the hollow cut into the tip, which must not
+     hide the two others, which cross */
+  static const Loop behind[4] = {
+      {0, 0, 0.4, 1, -0.3, 1}, {0.7105, 0.0785, 0.6, 0.01, 0, 1}, ELLIPSE, {0, 0.99, 1, 0.5, 0, 1}};
+  static const struct {
+    const char *name;
+    Loop loop[2];
+    PetscReal period;
+    PetscInt pair[2];
+  } cases[] = {{"one above the other", {ELLIPSE, {0, 1.001, 1, 0.5, 0, 1}}, 0, {-1, -1}},
+               {"a little lower", {ELLIPSE, {0, 0.99, 1, 0.5, 0, 1}}, 0, {0, 1}},
+               {"one in the other", {ELLIPSE, {0, 0, 0.5, 0.2, 0, 1}}, 0, {-1, -1}},
+               {"two equal ones", {ELLIPSE, ELLIPSE}, 0, {0, 1}},
+               {"a figure of eight", {ELLIPSE, {0, 3, 1, 0.5, 0.1, 2}}, 0, {1, 1}},
+               {"beside one another", {ELLIPSE, {2.5, 0, 1, 0.5, 0, 1}}, 0, {-1, -1}},
+               {"over a seam", {ELLIPSE, {2.5, 0, 1, 0.5, 0, 1}}, 4, {0, 1}},
+               {"over its own seam", {ELLIPSE, {0, 1.001, 1, 0.5, 0, 1}}, 1.9, {0, 0}}};
   for (int n = 1; n <= 300; n = 3 * n + 2)
     for (int k = 0; k < 4; k++) CheckPairs(n, k & 1 ? 4 : 0, k & 2 ? 5 : 0, n < 30 ? 1.9 : 0.3);
   CheckPairs(50, 4, 4, 100);
-  for (int smooth = 0; smooth < 2; smooth++) {
-    const PetscBool curves = smooth ? PETSC_TRUE : PETSC_FALSE;
-    CheckLoops("one above the other", apart, 0, curves, -1, -1);
-    CheckLoops("a little lower", over, 0, curves, 0, 1);
-    CheckLoops("one in the other", inside, 0, curves, -1, -1);
-    CheckLoops("two equal ones", same, 0, curves, 0, 1);
-    CheckLoops("a figure of eight", eight, 0, curves, 1, 1);
-    CheckLoops("beside one another", seam, 0, curves, -1, -1);
-    CheckLoops("over a seam", seam, 4, curves, 0, 1);
-    CheckLoops("over its own seam", apart, 1.9, curves, 0, 0);
-  }
-  CheckLoops("a tip in a hollow", nested, 0, PETSC_FALSE, 0, 1);
-  CheckLoops("a tip in a hollow", nested, 0, PETSC_TRUE, -1, -1);
-  CheckBehind(nested, over);
+  for (int smooth = 0; smooth < 2; smooth++)
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(cases); k++)
+      CheckLoops(cases[k].name, 2, cases[k].loop, cases[k].period, smooth, cases[k].pair[0], cases[k].pair[1]);
+  CheckLoops("a tip in a hollow", 2, behind, 0, PETSC_FALSE, 0, 1);
+  CheckLoops("a tip in a hollow", 2, behind, 0, PETSC_TRUE, -1, -1);
+  CheckLoops("behind a tip in a hollow", 4, behind, 0, PETSC_TRUE, 2, 3);
 }
