@@ -13,45 +13,36 @@ static void Outline(const PetscReal axes[2], const Pose *at, PetscReal X[]) {
   }
 }
 
-/* Least distance of points of any two ellipses or images, at least the true one; box: the box grown by images. */
-static PetscReal LeastDistance(const PackingSpec *s, PetscInt n, const PetscReal X[]) {
+/* Least distance of points of any two ellipses or images, at least the true one (walls: of a point from a wall). */
+static PetscReal LeastDistance(const PackingSpec *s, PetscInt n, const PetscReal X[], PetscBool walls) {
   PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < n * POINTS; i++)
-    for (PetscInt j = (i / POINTS + 1) * POINTS; j < n * POINTS; j++) {
+  for (PetscInt i = 0; i < n * POINTS; i++) {
+    for (int c = 0; c < 2 && walls; c++)
+      if (!s->periodic[c])
+        least = PetscMin(least, PetscMin(X[2 * i + c] - s->box[2 * c], s->box[2 * c + 1] - X[2 * i + c]));
+    for (PetscInt j = (i / POINTS + 1) * POINTS; j < n * POINTS && !walls; j++) {
       PetscReal d[2];
       for (int c = 0; c < 2; c++) {
-        const PetscReal period = s->box[2 * c + 1] - s->box[2 * c];
         d[c] = X[2 * i + c] - X[2 * j + c];
-        if (s->periodic[c]) d[c] -= period * PetscFloorReal(d[c] / period + 0.5);
+        if (s->periodic[c]) d[c] = remainder(d[c], s->box[2 * c + 1] - s->box[2 * c]);
       }
       least = PetscMin(least, PetscHypotReal(d[0], d[1]));
     }
-  return least;
-}
-
-/* Least distance of a point from a wall. */
-static PetscReal WallDistance(const PackingSpec *s, PetscInt n, const PetscReal X[]) {
-  PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < n * POINTS; i++)
-    for (int c = 0; c < 2; c++) {
-      if (s->periodic[c]) continue;
-      least = PetscMin(least, PetscMin(X[2 * i + c] - s->box[2 * c], s->box[2 * c + 1] - X[2 * i + c]));
-    }
+  }
   return least;
 }
 
 /* Semi-axes of n ellipses in the proportion 3:1, or every other of them half as large and rounder. */
-static PetscReal Axes(PetscInt n, PetscBool mixed, PetscReal fraction, PetscReal box, PetscReal axes[]) {
+static void Axes(PetscInt n, PetscBool mixed, PetscReal fraction, PetscReal box, PetscReal axes[]) {
   PetscReal area = 0;
   for (PetscInt i = 0; i < n; i++) {
-    const PetscBool small = mixed && i % 2 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool small = mixed && i % 2;
     axes[2 * i] = small ? 0.8 : 1.7;
     axes[2 * i + 1] = small ? 0.6 : 0.57;
     area += PETSC_PI * axes[2 * i] * axes[2 * i + 1];
   }
   const PetscReal scale = PetscSqrtReal(fraction * box / area);
   for (PetscInt i = 0; i < 2 * n; i++) axes[i] *= scale;
-  return scale;
 }
 
 static void CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, PetscReal fraction) {
@@ -61,7 +52,7 @@ static void CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, Petsc
   PackingSpec again = *s;
   Pose *pose, *second;
   TestCall(PetscMalloc2(n, &pose, n, &second));
-  (void)Axes(n, mixed, fraction, box, axes);
+  Axes(n, mixed, fraction, box, axes);
   TestCall(PackRandomly(s, n, axes, pose, &part));
   for (PetscInt i = 0; i < n; i++) {
     Outline(axes + 2 * i, pose + i, X + 2 * POINTS * i);
@@ -69,58 +60,51 @@ static void CheckRandom(const PackingSpec *s, PetscInt n, PetscBool mixed, Petsc
     mean[1] += 2 * pose[i].along[0] * pose[i].along[1] / n;
   }
   TestCall(PackRandomly(s, n, axes, second, &other));
-  for (PetscInt i = 0; i < n; i++) same = PetscMax(same, PetscAbsReal(pose[i].center[0] - second[i].center[0]));
+  for (PetscInt i = 0; i < n; i++) TestWorse(&same, pose[i].center[0] - second[i].center[0]);
   again.seed++;
   TestCall(PackRandomly(&again, n, axes, second, &other));
   for (PetscInt i = 0; i < n; i++) apart += PetscAbsReal(pose[i].center[0] - second[i].center[0]) / n;
-  const char *kind = mixed ? "mixed" : "equal";
-  CHECK(part >= 1, "%d %s ellipses at %g: all have their size", (int)n, kind, fraction);
-  CHECK(LeastDistance(s, n, X) >= s->gap, "they are %.3g apart, at least %g", LeastDistance(s, n, X), s->gap);
-  CHECK(WallDistance(s, n, X) >= s->wall_gap * (1 - 1e-12), "they are %.3g from walls, at least %g",
-        WallDistance(s, n, X), s->wall_gap);
-  CHECK(PetscHypotReal(mean[0], mean[1]) < 5 / PetscSqrtReal(n), "their directions have the mean %.2g",
-        PetscHypotReal(mean[0], mean[1]));
+  TestAbout("%d %s ellipses at %g", (int)n, mixed ? "mixed" : "equal", fraction);
+  CHECK(part >= 1, "all have their size");
+  CHECK(LeastDistance(s, n, X, PETSC_FALSE) >= s->gap, "they are %.3g apart, at least %g",
+        LeastDistance(s, n, X, PETSC_FALSE), s->gap);
+  CHECK(LeastDistance(s, n, X, PETSC_TRUE) >= s->wall_gap * (1 - 1e-12), "they are %.3g from walls, at least %g",
+        LeastDistance(s, n, X, PETSC_TRUE), s->wall_gap);
+  CheckBelow(PetscHypotReal(mean[0], mean[1]), 5 / PetscSqrtReal(n), "their directions have the mean");
   CHECK(same == 0 && apart > 0.1 * (s->box[1] - s->box[0]), "the same seed gives the same, another one another");
   TestCall(PetscFree2(pose, second));
 }
 
-static void CheckLattice(void) {
+/* On a lattice, and where there is no room. */
+static void CheckFull(void) {
   const PackingSpec s = {{0, 12, -2, 4}, {PETSC_TRUE, PETSC_FALSE}, 0.05, 0.05, 1};
   const PetscReal along[2] = {0.8, 0.6};
-  PetscReal axes[2 * 18], X[2 * 18 * POINTS], part;
-  Pose pose[18];
-  (void)Axes(18, PETSC_FALSE, 0.3, 72, axes);
+  PetscReal axes[2 * 20], X[2 * 18 * POINTS], part;
+  Pose pose[20];
+  TestAbout("ellipses");
+  Axes(18, PETSC_FALSE, 0.3, 72, axes);
   TestCall(PackLattice(&s, 18, axes, along, pose, &part));
   for (PetscInt i = 0; i < 18; i++) Outline(axes + 2 * i, pose + i, X + 2 * POINTS * i);
-  CHECK(part >= 1 && LeastDistance(&s, 18, X) >= s.gap && WallDistance(&s, 18, X) >= s.gap, "a lattice at .3");
-  (void)Axes(18, PETSC_FALSE, 0.9, 72, axes);
+  CHECK(part >= 1 && LeastDistance(&s, 18, X, PETSC_FALSE) >= s.gap && LeastDistance(&s, 18, X, PETSC_TRUE) >= s.gap,
+        "a lattice at .3");
+  Axes(18, PETSC_FALSE, 0.9, 72, axes);
   TestCall(PackLattice(&s, 18, axes, along, pose, &part));
   CHECK(part < 0.9 && part > 0.3, "at .9 it has room for %.2g", (0.9 * part));
-}
-
-static void CheckTooMany(void) {
-  const PackingSpec s = {{0, 8, 0, 8}, {PETSC_TRUE, PETSC_TRUE}, 0.02, 0.02, 1};
-  PetscReal axes[40], part;
-  Pose pose[20];
-  (void)Axes(20, PETSC_FALSE, 0.95, 64, axes);
-  TestCall(PackRandomly(&s, 20, axes, pose, &part));
-  CHECK(part < 1, "at .95 only %.2g have their size", part);
+  const PackingSpec box = {{0, 8, 0, 8}, {PETSC_TRUE, PETSC_TRUE}, 0.02, 0.02, 1};
+  Axes(20, PETSC_FALSE, 0.95, 64, axes);
+  TestCall(PackRandomly(&box, 20, axes, pose, &part));
+  CHECK(part < 1, "at random at .95 only %.2g have their size", part);
 }
 
 void Facts(void) {
   const PackingSpec channel = {{0, 12, -3, 3}, {PETSC_TRUE, PETSC_FALSE}, 0.03, 0.03, 1},
                     walls = {{-5, 5, 0, 8}, {PETSC_FALSE, PETSC_FALSE}, 0.02, 0.1, 7},
                     periodic = {{0, 6, 0, 6}, {PETSC_TRUE, PETSC_TRUE}, 0.03, 0.03, 3},
-                    tiny = {{0, 2.6, 0, 2.6},
-                            {PETSC_TRUE, PETSC_TRUE},
-                            0.02,
-                            0.02,
-                            1}; /* images of itself are neighbours */
+                    tiny = {{0, 2.6, 0, 2.6}, {PETSC_TRUE, PETSC_TRUE}, 0.02, 0.02, 1}; /* images are neighbours */
   CheckRandom(&channel, 60, PETSC_FALSE, 0.3);
   CheckRandom(&channel, 48, PETSC_TRUE, 0.52);
   CheckRandom(&walls, 60, PETSC_FALSE, 0.52);
   CheckRandom(&periodic, 36, PETSC_FALSE, 0.55);
   CheckRandom(&tiny, 3, PETSC_FALSE, 0.3);
-  CheckLattice();
-  CheckTooMany();
+  CheckFull();
 }
