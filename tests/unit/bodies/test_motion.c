@@ -13,10 +13,9 @@ static void CheckMotion(const char name[], const BodyMotion *m, PetscReal t) {
   MotionCarry(m, (Instant){t + step}, N, rest, after);
   for (PetscInt k = 0; k < N; k++) {
     MotionVelocity(m, (Instant){t}, X + 2 * k, U);
-    for (int c = 0; c < 2; c++)
-      rate = PetscMax(rate, PetscAbsReal((after[2 * k + c] - before[2 * k + c]) / (2 * step) - U[c]));
+    for (int c = 0; c < 2; c++) TestWorse(&rate, (after[2 * k + c] - before[2 * k + c]) / (2 * step) - U[c]);
   }
-  CHECK(rate < 1e-8, "%s, t = %g: places change by the velocity, error %.1e", name, t, rate);
+  CheckBelow(rate, 1e-8, "%s, t = %g: places change by the velocity", name, t);
   MotionCarry(m, (Instant){later}, N, rest, after);
   for (PetscInt k = 0; k < N; k++) {
     far = PetscMax(far, PetscHypotReal(after[2 * k] - X[2 * k], after[2 * k + 1] - X[2 * k + 1]));
@@ -26,8 +25,8 @@ static void CheckMotion(const char name[], const BodyMotion *m, PetscReal t) {
         "%s, t = %g: markers go by %.3f at most, in a stride", name, t, far);
   for (PetscInt k = 2; k < 2 * N; k++) before[k] = X[k] - X[k % 2], after[k] -= after[k % 2];
   MotionTurn(m, (Instant){t}, (Instant){later}, N - 1, before + 2);
-  for (PetscInt k = 2; k < 2 * N; k++) off = PetscMax(off, PetscAbsReal(before[k] - after[k]));
-  CHECK(off < 1e-14, "%s, t = %g: vectors turn with the body, error %.1e", name, t, off);
+  for (PetscInt k = 2; k < 2 * N; k++) TestWorse(&off, before[k] - after[k]);
+  CheckBelow(off, 1e-14, "%s, t = %g: vectors turn with the body", name, t);
 }
 
 void Facts(void) {
