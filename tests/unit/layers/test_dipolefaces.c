@@ -53,15 +53,15 @@ static void Compare(const OffsetTable lattice[2], const Case *a) {
       for (int q = 0; q < 2 * DIPOLE_COUNT; q++) part[q] = K[q / DIPOLE_COUNT][q % DIPOLE_COUNT] + (Lanes){0};
       stresslet.contract(part, N, M);
       for (int q = 0; q < 4; q++) {
-        worst = PetscMax(worst, PetscAbsReal(answer[q][i] - M[q][0]));
-        most = PetscMax(most, PetscAbsReal(M[q][0]));
+        TestWorse(&worst, answer[q][i] - M[q][0]);
+        TestWorse(&most, M[q][0]);
       }
     }
   }
-  CHECK(
-      most > 0.01 && worst < 1e-14,
-      "a dipole's field read by markers of an ellipse %g x %g is the pairs' sums, %+d, %+d cells off: to %.0e of %.2f",
-      a->half[0], a->half[1], (int)a->cells[0], (int)a->cells[1], worst, most);
+  TestAbout("dipoles read by markers of an ellipse %g x %g, %+d, %+d cells off", a->half[0], a->half[1],
+            (int)a->cells[0], (int)a->cells[1]);
+  CHECK(most > 0.01, "a field of %.2f", most);
+  CheckBelow(worst, 1e-14, "it is the pairs' sums");
   TestCall(DipoleFacesDestroy(&faces));
 }
 
@@ -84,12 +84,11 @@ static void CompareFar(const OffsetTable lattice[2], PetscReal diameter, PetscRe
       LayerPairLattice(&pairs, 100, i, j, d, sum);
       LayerPairLattice(&pairs, 0, i, j, d, form);
       for (int k = 0; k < stresslet.places.parts; k++) {
-        worst = PetscMax(worst, PetscAbsReal(form[k] - sum[k]));
-        most = PetscMax(most, PetscAbsReal(sum[k]));
+        TestWorse(&worst, form[k] - sum[k]);
+        TestWorse(&most, sum[k]);
       }
     }
-  CHECK(worst < bound * most, "pairs about %g cells apart have the closed form: to %.1e of the largest", diameter,
-        (worst / most));
+  CheckBelow(worst / most, bound, "pairs about %g cells apart have the closed form", diameter);
 }
 
 #define COLUMNS 16
@@ -130,10 +129,11 @@ static void CompareRows(const PetscReal before[2], const PetscReal now[2]) {
         if (f == FIELD_U) DipoleRowsAddVelocity(rows[k], j, row[k] + COLUMNS);
       }
       for (PetscInt i = 0; i < 2 * COLUMNS; i++) {
-        worst = PetscMax(worst, PetscAbsReal(row[0][i] - row[1][i]));
-        most = PetscMax(most, PetscAbsReal(row[1][i]));
+        TestWorse(&worst, row[0][i] - row[1][i]);
+        TestWorse(&most, row[1][i]);
       }
     }
+  TestAbout("rows");
   CHECK(worst == 0 && most > 0.1, "dipoles moved from rows %g and %g to %g and %g leave nothing behind: %.1e of %.2f",
         before[0], before[1], now[0], now[1], worst, most);
   for (int k = 0; k < 2; k++) TestCall(DipoleRowsDestroy(&rows[k]));
@@ -152,6 +152,7 @@ void Facts(void) {
                     .N = {N[q % 2][0], N[q % 2][1]}};
     Compare(lattice, &a);
   }
+  TestAbout("far");
   CompareFar(lattice, 16, 6e-5);
   CompareFar(lattice, 24, 1e-5);
   for (int c = 0; c < 2; c++) TestCall(OffsetTableDestroy(&lattice[c]));
