@@ -37,35 +37,6 @@ static void CheckLogarithm(void) {
   CheckBelow(worst, 1e-15, "logarithms of four numbers at once, of themselves");
 }
 
-/* Against the grid's Stokes solve for two opposite forces, of u and of v, in a large periodic box, near the first ones.
- */
-static void CheckAgainstGrid(const OffsetTable *t) {
-  const PetscInt at[2] = {64, 64}, apart = 64;
-  PetscReal worst = 0;
-  ScopedWorld w;
-  Vec f, u, p;
-  TestWorldCreate(&w, EXACT PERIODIC "-vesicle_shape none -scheme_type coupled -scheme_order 2 -delta_type cbs54 "
-                                     "-domain_box 0,256,0,256 -domain_cells 256,256 -fluid_inertia none");
-  const Grid g = w.fluid->grid;
-  TestFieldVecs(g->velocity, &f, &u, NULL);
-  TestFieldVecs(g->da[FIELD_P], &p, NULL);
-  for (int k = 0; k < 2; k++) {
-    const PetscInt row = at[1] + k * 2 * apart - g->first, column = at[0] + k * 2 * apart;
-    if (row < 0 || row >= g->rows[FIELD_P]) continue;
-    TestArray(f)[row * g->n[0] + column] = k ? -1 : 1;
-    TestArray(f)[GridLocalU(g) + row * g->n[0] + column] = k ? -2 : 2;
-  }
-  TestCall(StokesSolve(TestWorldStokes(&w), f, NULL, u, p));
-  const PetscScalar *a = TestArray(p);
-  for (PetscInt j = -6; j <= 6; j++)
-    for (PetscInt i = -6; i <= 6; i++) {
-      const PetscInt row = at[1] + j - g->first;
-      if (row < 0 || row >= g->rows[FIELD_P]) continue;
-      TestWorse(&worst, a[row * g->n[0] + at[0] + i] - OffsetAt(t, OFFSET_UU, i, j) - 2 * OffsetAt(t, OFFSET_VV, i, j));
-    }
-  CheckBelow(worst, 1e-5, "the Stokes solve's pressure next to a force, its images 256 h away");
-}
-
 /* Largest difference of the pressure from 1/RADIUS inside and from zero outside, its mean outside taken off. */
 static void JumpError(Grid g, const PetscReal center[2], const PetscReal p[], PetscReal *error) {
   PetscReal sum[2] = {0, 0}, X[2];
@@ -139,7 +110,6 @@ void Facts(void) {
   TestCall(LatticePressure(20, &pressure));
   CheckLogarithm();
   CheckTable(&pressure);
-  CheckAgainstGrid(&pressure);
   TestCall(OffsetTableDestroy(&pressure));
   for (int k = 0; k < 4; k++) CheckCircle(TestText(CIRCLE "-delta_type %s %s", kernels[k / 2], grids[k % 2]), 0);
   CheckCircle(CIRCLE "-delta_type cbs54 -domain_cells 64,64 -fluid_inertia unsteady -vesicle_markers 45", 100);
