@@ -116,7 +116,7 @@ static void CheckContact(PetscInt p, PetscReal gap, PetscReal W, PetscReal B) {
   }
   PetscReal *G = TestReals(2 * q.size), *H = TestReals(2 * q.size), *change = TestReals(2 * q.size);
   for (PetscInt v = 0; v < q.own; v++) change[v * q.size] = q.first + v ? small * ONE : 0;
-  TestCall(CrossLayerAddContact(q.cross, PETSC_TRUE, change, G));
+  TestCall(CrossLayerAddContact(q.cross, PETSC_TRUE, H, G));
   TestCall(CrossLayerAddContact(q.cross, PETSC_FALSE, change, H));
   Share(&q, G, 0, force);
   Share(&q, H, 0, stiff);
