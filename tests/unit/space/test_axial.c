@@ -4,8 +4,11 @@
 #include "space/space.h"
 #include "sphere/shape.h"
 
-/* Extension along x. */
-static PetscErrorCode AxialExtension(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+TestScoped(Space, SpaceDestroy)
+
+    /* Extension along x. */
+    static PetscErrorCode
+    AxialExtension(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   const PetscReal e = *(const PetscReal *)rate;
   for (PetscInt k = 0; k < 3 * n; k++) u[k] = e * X[k] * (k < n ? 1 : -0.5);
   return PETSC_SUCCESS;
@@ -22,9 +25,6 @@ static PetscReal AxialNormalSpeed(Space s) {
 
 void Facts(void) {
   const PetscReal rate = 0.2, ratio[] = {1, 4};
-  PetscMPIInt ranks;
-  TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
-  if (ranks > 1) return; /* a vesicle has one rank */
   for (int q = 0; q < 2; q++) {
     const SpaceSetting setting = {.p = 10,
                                   .symmetry = SPHERE_REVOLVED,
@@ -37,20 +37,16 @@ void Facts(void) {
     SpaceSetting whole = setting;
     const Vesicle3Setting material = {.nu = 1, .bending = 0.3, .label_rate = 3, .ratio = ratio[q]};
     PetscReal along, across, *X = TestReals(2 * setting.p + 1), *unfolded = TestReals(3 * HarmonicsCount(setting.p));
-    Space axial, space;
+    Scoped(Space) axial, space;
     ShapeSpheroid(0.95, PETSC_FALSE, 1, &along, &across);
     SurfaceSpheroid(setting.p, along, across, X);
     TestCall(SpaceCreate(PETSC_COMM_WORLD, &setting, 1, &material, X, &axial));
     for (PetscInt k = 0; k < 400; k++) TestCall(SpaceStep(axial, 1000));
-    const PetscReal still = AxialNormalSpeed(axial);
-    CHECK(still < 1e-7, "ratio %g: a body of revolution comes to rest, %.1e", ratio[q], still);
+    CheckBelow(AxialNormalSpeed(axial), 1e-7, "ratio %g: a body of revolution comes to rest", ratio[q]);
     SphereUnfold(axial->sphere, 3, axial->state.X, unfolded);
     whole.symmetry = SPHERE_WHOLE;
     TestCall(SpaceCreate(PETSC_COMM_WORLD, &whole, 1, &material, unfolded, &space));
     TestCall(SpaceStart(space));
-    const PetscReal speed = AxialNormalSpeed(space);
-    CHECK(speed < 1e-6, "ratio %g: and stays in three dimensions, %.1e", ratio[q], speed);
-    TestCall(SpaceDestroy(&axial));
-    TestCall(SpaceDestroy(&space));
+    CheckBelow(AxialNormalSpeed(space), 1e-6, "ratio %g: and stays in three dimensions", ratio[q]);
   }
 }
