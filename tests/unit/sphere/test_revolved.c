@@ -4,8 +4,10 @@
 #include "sphere/shape.h"
 #include "sphere/spherelayer.h"
 
-/* Any smooth body of revolution. */
-static PetscReal *RevolvedSurface(Sphere s) {
+TestScoped(Sphere, SphereDestroy) TestScoped(Surface, SurfaceDestroy)
+
+    /* Any smooth body of revolution. */
+    static PetscReal *RevolvedSurface(Sphere s) {
   PetscReal *c = TestReals(s->size);
   unsigned seed = 5;
   for (PetscInt k = 1; k < s->size; k++) c[k] = TestRandom(&seed) / PetscPowReal(5, (PetscReal)s->degree[k]);
@@ -29,8 +31,8 @@ static PetscReal *Restricted(Sphere revolved, PetscInt whole, const PetscReal M[
 }
 
 static void CheckRevolved(PetscInt p) {
-  Sphere one, all;
-  Surface meridian, surface;
+  Scoped(Sphere) one, all;
+  Scoped(Surface) meridian, surface;
   TestCall(SphereCreate(p, SPHERE_REVOLVED, &one));
   TestCall(SphereCreate(p, SPHERE_WHOLE, &all));
   TestCall(SurfaceCreate(one, &meridian));
@@ -39,19 +41,18 @@ static void CheckRevolved(PetscInt p) {
             *M = TestReals(all->size * all->size), *m = TestReals(one->size * one->size);
   SphereUnfold(one, 3, c, whole);
   SphereFold(one, whole, folded);
-  CHECK(TestFar(one->size, folded, c) < 1e-15, "degree %d: what is unfolded folds back", (int)p);
+  TestAbout("body of revolution of degree %d", (int)p);
+  CheckBelow(TestFar(one->size, folded, c), 1e-15, "what is unfolded folds back");
   TestCall(SurfacePlace(meridian, c, PETSC_TRUE));
   TestCall(SurfacePlace(surface, whole, PETSC_TRUE));
-  CHECK(PetscAbsReal(meridian->area / surface->area - 1) < 1e-13 &&
-            PetscAbsReal(meridian->volume / surface->volume - 1) < 1e-13 &&
-            PetscAbsReal(meridian->energy / surface->energy - 1) < 1e-12,
-        "degree %d: area, volume and energy of a body of revolution", (int)p);
+  CheckBelow(meridian->area / surface->area - 1, 1e-13, "area");
+  CheckBelow(meridian->volume / surface->volume - 1, 1e-13, "volume");
+  CheckBelow(meridian->energy / surface->energy - 1, 1e-12, "energy");
   ShapeMoments moments[2];
   TestCall(ShapeMeasure(meridian, &moments[0]));
   TestCall(ShapeMeasure(surface, &moments[1]));
-  CHECK(TestFar(3, moments[0].axis, moments[1].axis) < 1e-13 &&
-            TestFar(3, moments[0].center, moments[1].center) < 1e-13,
-        "degree %d: axes and middle of a body of revolution", (int)p);
+  CheckBelow(TestFar(3, moments[0].axis, moments[1].axis), 1e-13, "axes");
+  CheckBelow(TestFar(3, moments[0].center, moments[1].center), 1e-13, "middle");
   for (int q = 0; q < 4; q++) {
     static const char *const what[] = {"single layer", "double layer", "bending", "normals"};
     const Kernel3 *kernel = q ? &Stresslet3 : &Stokeslet3;
@@ -59,14 +60,10 @@ static void CheckRevolved(PetscInt p) {
     if (q < 2) TestCall(SphereLayerMatrix(all, kernel, whole, M));
     if (q >= 2) TestCall((q == 2 ? SurfaceBending : SurfaceNormals)(meridian, m));
     if (q >= 2) TestCall((q == 2 ? SurfaceBending : SurfaceNormals)(surface, M));
-    const PetscReal far = TestFar(one->size * one->size, m, Restricted(one, all->size, M));
-    CHECK(far < 1e-12 * TestFar(one->size * one->size, m, NULL), "degree %d: %s of a body of revolution, %.1e", (int)p,
-          what[q], far);
+    CheckBelow(TestFar(one->size * one->size, m, Restricted(one, all->size, M)) /
+                   TestFar(one->size * one->size, m, NULL),
+               1e-12, "%s", what[q]);
   }
-  TestCall(SurfaceDestroy(&meridian));
-  TestCall(SurfaceDestroy(&surface));
-  TestCall(SphereDestroy(&one));
-  TestCall(SphereDestroy(&all));
 }
 
 void Facts(void) {

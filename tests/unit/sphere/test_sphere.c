@@ -4,8 +4,10 @@
 #include "sphere/spherelayer.h"
 #include "sphere/surface.h"
 
-/* Any smooth surface: an ellipsoid and some harmonics of a degree below p. */
-static PetscReal *TestSurface(PetscInt p, PetscReal rough) {
+TestScoped(Surface, SurfaceDestroy)
+
+    /* Any smooth surface: an ellipsoid and some harmonics of a degree below p. */
+    static PetscReal *TestSurface(PetscInt p, PetscReal rough) {
   const PetscInt count = HarmonicsCount(p);
   const PetscReal axes[3] = {1.3, 0.9, 0.8};
   PetscReal *c = TestReals(3 * count);
@@ -19,24 +21,18 @@ static PetscReal *TestSurface(PetscInt p, PetscReal rough) {
 }
 
 static void CheckTables(Sphere s) {
-  const PetscInt n = s->fine.grid.n, count = s->count;
-  PetscReal *gram = TestReals(count * count), *y = TestReals(count), *z = TestReals(count), error = 0, far = 0;
+  const PetscInt count = s->count, parts = HARMONIC_PARTS * count;
+  PetscReal *gram = TestReals(count * count), *y = TestReals(count), *z = TestReals(count), error = 0;
   const PetscReal step = 1e-5, at[] = {0.7, 2.1}, turn = 0.9;
   TestCall(SphereTableProject(&s->fine, count, count, s->fine.part[HARMONIC], gram));
-  for (PetscInt k = 0; k < count * count; k++)
-    error = PetscMax(error, PetscAbsReal(gram[k] - (k % count == k / count)));
-  CHECK(error < 1e-13, "degree %d: %d harmonics are orthonormal on %d points, %.1e", (int)s->p, (int)count, (int)n,
-        error);
-  PetscReal *table = TestReals(HARMONIC_PARTS * count), *moved = TestReals(4 * HARMONIC_PARTS * count);
+  for (PetscInt k = 0; k < count * count; k++) TestWorse(&error, gram[k] - (k % count == k / count));
+  CheckBelow(error, 1e-13, "%d harmonics are orthonormal on %d points", (int)count, (int)s->fine.grid.n);
+  PetscReal *table = TestReals(parts), *moved = TestReals(4 * parts);
   TestCall(HarmonicsAt(s->p, 1, at, at + 1, HARMONIC_PARTS, table));
-  for (int q = 0; q < 4; q++) {
-    const PetscReal theta = at[0] + (q == 0   ? step
-                                     : q == 1 ? -step
-                                              : 0),
-                    phi = at[1] + (q == 2   ? step
-                                   : q == 3 ? -step
-                                            : 0);
-    TestCall(HarmonicsAt(s->p, 1, &theta, &phi, HARMONIC_PARTS, moved + q * HARMONIC_PARTS * count));
+  for (int q = 0; q < 4; q++) { /* theta and phi, each farther and back */
+    PetscReal place[2] = {at[0], at[1]};
+    place[q / 2] += q % 2 ? -step : step;
+    TestCall(HarmonicsAt(s->p, 1, &place[0], &place[1], HARMONIC_PARTS, moved + q * parts));
   }
   static const int pairs[][3] = {{HARMONIC, HARMONIC_T, 0},
                                  {HARMONIC, HARMONIC_P, 2},
@@ -46,21 +42,18 @@ static void CheckTables(Sphere s) {
   for (int q = 0; q < 5; q++) {
     error = 0;
     for (PetscInt k = 0; k < count; k++) {
-      const PetscReal *up = moved + (pairs[q][2] * HARMONIC_PARTS + pairs[q][0]) * count,
-                      *down = up + HARMONIC_PARTS * count;
-      error = PetscMax(error, PetscAbsReal((up[k] - down[k]) / (2 * step) - table[pairs[q][1] * count + k]));
+      const PetscReal *up = moved + pairs[q][2] * parts + pairs[q][0] * count, *down = up + parts;
+      TestWorse(&error, (up[k] - down[k]) / (2 * step) - table[pairs[q][1] * count + k]);
     }
-    CHECK(error < 1e-10 * PetscPowReal((PetscReal)s->p, 4), "degree %d: derivative %d by differences, %.1e", (int)s->p,
-          pairs[q][1], error);
+    CheckBelow(error, 1e-10 * PetscPowReal((PetscReal)s->p, 4), "degree %d: derivative %d by differences", (int)s->p,
+               pairs[q][1]);
   }
-  for (PetscInt k = 0; k < count; k++)
-    z[k] = TestProduct(count, (HarmonicsTurn(s->p, turn, PETSC_FALSE, TestSurface(s->p, 1), y), y), table);
-  const PetscReal phi = at[1] + turn;
+  const PetscReal *c = TestSurface(s->p, 1), phi = at[1] + turn;
+  HarmonicsTurn(s->p, turn, PETSC_FALSE, c, y);
   TestCall(HarmonicsAt(s->p, 1, at, &phi, 1, moved));
-  far = PetscAbsReal(z[0] - TestProduct(count, TestSurface(s->p, 1), moved));
+  CheckBelow(TestProduct(count, y, table) - TestProduct(count, c, moved), 1e-13, "coefficients turn by %g", turn);
   HarmonicsTurn(s->p, turn, PETSC_TRUE, y, z);
-  CHECK(far < 1e-13 && TestFar(count, z, TestSurface(s->p, 1)) < 1e-14,
-        "degree %d: coefficients turn by %g and back, %.1e", (int)s->p, turn, far);
+  CheckBelow(TestFar(count, z, c), 1e-14, "and back");
 }
 
 /* Drag over 6 pi b of a prolate spheroid, long half axis a, short b, along and across it (Perrin 1936). */
@@ -77,9 +70,9 @@ static void CheckDrag(Sphere s, PetscReal a, PetscReal most) {
   TestCall(SphereSingleLayer(s, 2, c, S)); /* the force of a translating ellipsoid is even on the parameter sphere */
   for (int d = 0; d < 3; d++) {
     const PetscReal drag = a > 1 ? SpheroidDrag(a, 1, d == 0) : 1, *column = S + d * count * size;
-    worst = PetscMax(worst, PetscAbsReal(3 * drag * column[d * count] - 1));
+    TestWorse(&worst, 3 * drag * column[d * count] - 1);
   }
-  CHECK(worst < most, "degree %d: drag of a spheroid of axes %g, 1, 1, relative error %.1e", (int)s->p, a, worst);
+  CheckBelow(worst, most, "drag of a spheroid of axes %g, 1, 1, relative", a);
 }
 
 static void CheckDoubleLayer(Sphere s) {
@@ -98,45 +91,41 @@ static void CheckDoubleLayer(Sphere s) {
       U[f * count + k] = c[e * count + k];
     }
     TestCall(DenseMultAdd(PETSC_FALSE, size, size, 1, D, U, V));
-    for (PetscInt k = 0; k < size; k++) error[q / 3] = PetscMax(error[q / 3], PetscAbsReal(V[k] - U[k] / 2));
+    for (PetscInt k = 0; k < size; k++) TestWorse(&error[q / 3], V[k] - U[k] / 2);
   }
-  CHECK(error[0] < 2e-6 && error[1] < 4e-6, "degree %d: the double layer halves translations and rotations, %.1e %.1e",
-        (int)s->p, error[0], error[1]);
+  CheckBelow(error[0], 2e-6, "the double layer halves translations");
+  CheckBelow(error[1], 4e-6, "the double layer halves rotations");
 }
 
 static void CheckMeasures(Sphere s) {
   const PetscInt size = 3 * s->count;
   const PetscReal axes[3] = {2, 2, 2};
   PetscReal *c = TestReals(size), *N = TestReals(size * size), *n = TestReals(size);
-  Surface surface;
+  Scoped(Surface) surface;
   SurfaceEllipsoid(s->p, axes, c);
   TestCall(SurfaceCreate(s, &surface));
   TestCall(SurfacePlace(surface, c, PETSC_TRUE));
-  CHECK(PetscAbsReal(surface->area / (16 * PETSC_PI) - 1) < 1e-13 &&
-            PetscAbsReal(surface->volume / (32 * PETSC_PI / 3) - 1) < 1e-13 &&
-            PetscAbsReal(surface->energy / (8 * PETSC_PI) - 1) < 1e-12,
-        "degree %d: area, volume and energy of a sphere", (int)s->p);
+  CheckBelow(surface->area / (16 * PETSC_PI) - 1, 1e-13, "area of a sphere");
+  CheckBelow(surface->volume / (32 * PETSC_PI / 3) - 1, 1e-13, "volume of a sphere");
+  CheckBelow(surface->energy / (8 * PETSC_PI) - 1, 1e-12, "energy of a sphere");
   TestCall(SurfaceNormals(surface, N));
   TestCall(DenseMultAdd(PETSC_FALSE, size, size, 0.5, N, c, n)); /* X/2 is the normal */
-  CHECK(PetscAbsReal(TestProduct(size, n, n) - 4 * PETSC_PI) < 1e-12, "degree %d: the normal is normal", (int)s->p);
+  CheckBelow(TestProduct(size, n, n) - 4 * PETSC_PI, 1e-12, "the normal is normal");
   for (PetscInt k = 0; k < size; k++) c[k] *= 0.5;
   PetscReal *tension = TestReals(s->count), *K = TestReals(size * size), *V = TestReals(size);
   tension[0] = PetscSqrtReal(4 * PETSC_PI); /* 1 everywhere */
   TestCall(SurfacePlace(surface, c, PETSC_TRUE));
   TestCall(SurfacePull(surface, tension, K));
   for (PetscInt l = 2; l <= 4; l++) { /* V = n Y_(l, 1) */
-    PetscReal *at = TestReals(3 * surface->n), energy;
+    PetscReal *at = TestReals(3 * surface->n);
     for (PetscInt k = 0; k < 3 * surface->n; k++)
       at[k] = surface->normal[k] * s->fine.part[HARMONIC][(l * l + l + 1) * surface->n + k % surface->n];
     TestCall(SphereTableProject(&s->fine, s->count, 3, at, V));
     for (PetscInt k = 0; k < size; k++) n[k] = 0;
     TestCall(DenseMultAdd(PETSC_FALSE, size, size, 1, K, V, n));
-    energy = TestProduct(size, n, V);
-    CHECK(PetscAbsReal(energy / (l * (l + 1)) - 1) < 1e-11,
-          "degree %d: tension pulls a bump of degree %d with l(l + 1), %.1e", (int)s->p, (int)l,
-          energy / (l * (l + 1)) - 1);
+    CheckBelow(TestProduct(size, n, V) / (l * (l + 1)) - 1, 1e-11, "tension pulls a bump of degree %d with l(l + 1)",
+               (int)l);
   }
-  TestCall(SurfaceDestroy(&surface));
 }
 
 /* Energy and area along a random change, by differences of fourth order. */
@@ -146,7 +135,7 @@ static void CheckGradients(Sphere s) {
   const PetscReal step = 2e-3;
   PetscReal *c = TestSurface(s->p, 1), *d = TestSurface(s->p, 2), *g = TestReals(size), *A = TestReals(size * s->count),
             *x = TestReals(size), rise[2] = {0}, slope[2] = {0};
-  Surface surface;
+  Scoped(Surface) surface;
   TestCall(SurfaceCreate(s, &surface));
   TestCall(SurfacePlace(surface, c, PETSC_TRUE));
   TestCall(SurfaceGradient(surface, g));
@@ -161,15 +150,14 @@ static void CheckGradients(Sphere s) {
     rise[1] += weight[q] / step * surface->area;
   }
   for (int q = 0; q < 2; q++)
-    CHECK(PetscAbsReal(rise[q] / slope[q] - 1) < 1e-8, "degree %d: gradient of the %s by differences, %.1e of %.1e",
-          (int)s->p, q ? "area" : "energy", rise[q] / slope[q] - 1, slope[q]);
-  TestCall(SurfaceDestroy(&surface));
+    CheckBelow(rise[q] / slope[q] - 1, 1e-8, "gradient of the %s by differences", q ? "area" : "energy");
 }
 
 void Facts(void) {
   static const PetscInt degrees[] = {8, 12};
   for (int q = 0; q < 2; q++) {
     Sphere s;
+    TestAbout("degree %d", (int)degrees[q]);
     TestCall(SphereCreate(degrees[q], SPHERE_WHOLE, &s));
     CheckTables(s);
     CheckDrag(s, 1, 1e-13);
