@@ -22,12 +22,12 @@ static void CheckSymmetric(PetscInt n) {
   for (PetscInt i = 0; i < n; i++) {
     PetscReal sum = 0;
     for (PetscInt j = 0; j < n; j++) sum += (PetscReal)A[j * n + i] * x[j];
-    product = PetscMax(product, PetscAbsReal(y[i] - sum));
+    TestWorse(&product, y[i] - sum);
   }
   TestCall(SymmetricInvert(n, copy, packed, &done));
   SymmetricMult(n, packed, y, A);
-  for (PetscInt i = 0; i < n; i++) inverse = PetscMax(inverse, PetscAbsReal(A[i] - x[i]));
-  CHECK(product < 1e-6 * n, "%d rows: a product is off by %.1e", (int)n, product);
+  for (PetscInt i = 0; i < n; i++) TestWorse(&inverse, A[i] - x[i]);
+  CheckBelow(product, 1e-6 * n, "%d rows: a product", (int)n);
   CHECK(done && inverse < 1e-5, "%d rows: its inverse gives back what went in to %.1e", (int)n, inverse);
   TestCall(PetscFree5(A, copy, packed, x, y));
 }
@@ -47,14 +47,14 @@ static void CheckPoints(PetscBool open, PetscInt n, PetscInt points) {
   for (PetscInt i = 0; i < points; i++) {
     PetscReal sum = 0;
     for (PetscInt k = 0; k < n; k++) sum += w.to_points[i * n + k] * x[2 * k];
-    off = PetscMax(off, PetscAbsReal(sum - value[2 * i]));
+    TestWorse(&off, sum - value[2 * i]);
   }
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal angle = open ? PETSC_PI * (k + 0.5) / n : 2 * PETSC_PI * k / n;
-    wave = PetscMax(wave, PetscAbsReal(x[2 * k + 1] - (points < 3 ? 1 : PetscCosReal(angle))));
+    TestWorse(&wave, x[2 * k + 1] - (points < 3 ? 1 : PetscCosReal(angle)));
   }
-  CHECK(off < 1e-13, "%d points on %d markers have their values again to %.1e", (int)points, (int)n, off);
-  CHECK(wave < 1e-13, "and the first cosine is interpolated to %.1e", wave);
+  CheckBelow(off, 1e-13, "%d points on %d markers have their values again", (int)points, (int)n);
+  CheckBelow(wave, 1e-13, "and the first cosine is interpolated");
   TestCall(CurvePointsDestroy(&w));
 }
 
