@@ -163,11 +163,6 @@ static inline void TestWorldRespond(TestWorld *t, PetscBool near, Vec F, Vec U) 
   TestCall(DMRestoreGlobalVector(g->velocity, &w));
 }
 
-/* TestWorldShare - x[n] of the first vesicle's owner to every rank. Collective. */
-static inline void TestWorldShare(TestWorld *w, PetscMPIInt n, PetscReal x[]) {
-  TestCall(MPI_Bcast(x, n, MPIU_REAL, LayoutOwner(w->layout, 0), w->scene->comm));
-}
-
 /* TestWorldScheme - the scheme, at its initial state. */
 static inline void TestWorldScheme(TestWorld *w) {
   TestCall(BaselinesRegister());
