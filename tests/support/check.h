@@ -55,29 +55,25 @@ static inline void PETSC_ATTRIBUTE_FORMAT(3, 4) CheckBelow(PetscReal x, PetscRea
 }
 
 /* TestKeep - what is to be destroyed, or freed, when the program ends. */
-static struct {
-  void **what;
-  PetscBool *is_object;
-  PetscInt n, room;
-} test_kept;
+static struct TestKept {
+  void *what;
+  PetscBool is_object;
+  struct TestKept *before;
+} * test_kept;
 
 static inline void TestKeep(void *what, PetscBool is_object) {
-  if (test_kept.n == test_kept.room) {
-    test_kept.room = 2 * test_kept.room + 16;
-    TestCall(PetscRealloc(sizeof(void *) * (size_t)test_kept.room, &test_kept.what));
-    TestCall(PetscRealloc(sizeof(PetscBool) * (size_t)test_kept.room, &test_kept.is_object));
-  }
-  test_kept.what[test_kept.n] = what;
-  test_kept.is_object[test_kept.n++] = is_object;
+  struct TestKept *kept;
+  TestCall(PetscNew(&kept));
+  *kept = (struct TestKept){what, is_object, test_kept};
+  test_kept = kept;
 }
 
 static inline void TestDestroyKept(void) {
-  while (test_kept.n--) {
-    PetscObject object = (PetscObject)test_kept.what[test_kept.n];
-    TestCall(test_kept.is_object[test_kept.n] ? PetscObjectDestroy(&object) : PetscFree(test_kept.what[test_kept.n]));
+  for (struct TestKept *kept; (kept = test_kept);) {
+    test_kept = kept->before;
+    TestCall(kept->is_object ? PetscObjectDestroy((PetscObject *)&kept->what) : PetscFree(kept->what));
+    TestCall(PetscFree(kept));
   }
-  TestCall(PetscFree(test_kept.what));
-  TestCall(PetscFree(test_kept.is_object));
 }
 
 /* TestReals - n zeros, which the end of the program frees. */
