@@ -72,7 +72,7 @@ static void CheckText(const OptionTable *table, Values *values) {
 static void CheckTable(void) {
   Values v = {0};
   OptionTable table;
-  PetscReal x[MANY], off = 0;
+  PetscReal x[MANY];
   char *text, help[OPTION_HELP];
   LongList(x, &text);
   TestCall(PetscOptionsClear(NULL));
@@ -84,8 +84,7 @@ static void CheckTable(void) {
   CHECK(v.words.n == 4 && v.words.v[0] == 1 && v.words.v[1] == 2 && !v.words.v[2] && v.words.v[3] == 1,
         "a list of words is their indices");
   CHECK(v.integer == 5 && v.truth, "the user's values");
-  for (PetscInt k = 0; k < v.reals.n; k++) off = PetscMax(off, PetscAbsReal(v.reals.v[k] - x[k]));
-  CHECK(v.reals.n == MANY && off == 0, "a list of %d numbers, to the bit", MANY);
+  CHECK(v.reals.n == MANY && TestFar(MANY, v.reals.v, x) == 0, "a list of %d numbers, to the bit", MANY);
   CHECK(OptionGiven(&table, "-t_reals") && !OptionGiven(&table, "-t_real") && !OptionGiven(&table, "-t_other"),
         "what is given and what is not");
   CHECK(OptionFind(&table, "-t_path") == 5 && OptionFind(&table, "-t_pat") < 0, "found by the whole name");
@@ -115,7 +114,7 @@ static void CheckScene(void) {
   TestCall(PetscFree(options));
   for (PetscInt v = 0; v < scene->shape.vesicles; v++) {
     const PetscReal *X = scene->shape.X + 2 * scene->shape.start[v]; /* the end of the first semi-axis */
-    off = PetscMax(off, PetscAbsReal(X[0] - (v + 0.8)) + PetscAbsReal(X[1] - 0.5));
+    TestWorse(&off, PetscAbsReal(X[0] - (v + 0.8)) + PetscAbsReal(X[1] - 0.5));
   }
   CHECK(scene->shape.vesicles == VESICLES && off < 1e-12, "%d vesicles in their places, %.1e", VESICLES, off);
   TestCall(SceneDestroy(&scene));

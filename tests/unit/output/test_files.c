@@ -35,13 +35,6 @@ static void CheckTexts(void) {
   TestCall(PetscFree(text));
 }
 
-/* How often a character is in a text. */
-static PetscInt Count(const char text[], char what) {
-  PetscInt n = 0;
-  for (; *text; text++) n += *text == what;
-  return n;
-}
-
 /* A row has room for the longest numbers of all its vesicles, and comes back from its text. Of up to 40 vesicles it has
    the columns of each. */
 static void CheckRows(PetscInt vesicles) {
@@ -55,18 +48,20 @@ static void CheckRows(PetscInt vesicles) {
   const PetscInt columns = 7 + (vesicles > 1 && vesicles <= 40 ? 2 * vesicles : 0);
   char *text;
   size_t used = 0;
+  PetscInt commas = 0;
   Record record;
+  TestAbout("%d vesicles", (int)vesicles);
   TestCall(RecordCreate(&setting, &record));
-  CHECK(Count(record.header, ',') == columns - 1, "%d vesicles: %d columns", (int)vesicles, (int)columns);
+  for (const char *c = record.header; *c; c++) commas += *c == ',';
+  CHECK(commas == columns - 1, "%d columns", (int)columns);
   const char *last = columns > 7 ? TestText("gap_%d,flux,force", (int)vesicles) : "contact,gap,flux,force";
-  CHECK(!strcmp(record.header + strlen(record.header) - strlen(last), last), "%d vesicles: the last columns",
-        (int)vesicles);
+  CHECK(!strcmp(record.header + strlen(record.header) - strlen(last), last), "the last columns");
   TestCall(PetscMalloc1(32 * columns, &text));
   for (PetscInt c = 0; c < columns; c++)
     used += (size_t)snprintf(text + used, 32, "%s%.17g", c ? "," : "", -1.2345678901234567e-300 * (c + 1));
   RecordParse(&record, text);
-  CHECK(!strcmp(record.text, text), "%d vesicles: a row of %zu characters", (int)vesicles, used);
-  CHECK(RecordNumber(&record, "area") == -1.2345678901234567e-300 * 2, "%d vesicles: its numbers", (int)vesicles);
+  CHECK(!strcmp(record.text, text), "a row of %zu characters", used);
+  CHECK(RecordNumber(&record, "area") == -1.2345678901234567e-300 * 2, "its numbers");
   TestCall(PetscFree(text));
   TestCall(RecordDestroy(&record));
 }
@@ -121,7 +116,7 @@ static void CheckPlaces(void) {
         const hid_t set = H5Dopen2(file.id, "/a/two", H5P_DEFAULT);
         (void)H5Dget_chunk_info_by_coord(set, start, &filters, &place, &bytes);
         (void)H5Dclose(set);
-        same = place != HADDR_UNDEF && H5EntryPlace(&file, "/a/two", ask[k]) == place ? PETSC_TRUE : PETSC_FALSE;
+        same = place != HADDR_UNDEF && H5EntryPlace(&file, "/a/two", ask[k]) == place;
       }
       CHECK(same, "frame %d of %d lies where HDF5 says", (int)ask[k], (int)frames);
       TestCall(H5ReadArray(&file, "/a/one", ask[k], 35, read));
@@ -137,6 +132,8 @@ void Facts(void) {
   CheckRows(1);
   CheckRows(40);
   CheckRows(5000);
+  TestAbout("records");
   CheckCombined();
+  TestAbout("frames");
   CheckPlaces();
 }
