@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
-from harness import run_petves
+from harness import run_scenes
 from restarts import frames
+
+pytestmark = pytest.mark.xdist_group("first_state")  # its tests share runs
 
 VESICLE = "-vesicle_semi_axes 0.25,0.5 -vesicle_angle 30 -vesicle_center 0.1,-0.2 -vesicle_bending 0.1"
 SHEAR = f"-domain_box -2,2,-2,2 -domain_cells 32,32 -flow_type shear {VESICLE} -fluid_inertia none"
@@ -22,11 +24,16 @@ KINDS = {
 OTHER = set("step time dt wall nsolve coupled_its div_max surface_div_max area_shift obstacle_angle_1".split())
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_first_state_is_what_a_short_step_leads_to(kind, tmp_path):
-    """Fields, tension, forces and every column, on 2 ranks."""
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
     short = "-time_step 1e-8 -time_end 1e-8 -output_every 1e-8 -scheme_startup euler -coupled_ksp_rtol 1e-10"
-    run = run_petves(tmp_path / "run", f"{KINDS[kind]} {short}", ranks=2)
+    return run_scenes(tmp_path_factory.mktemp("runs"), {kind: f"{KINDS[kind]} {short}" for kind in KINDS}, ranks=2)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_first_state_is_what_a_short_step_leads_to(kind, runs):
+    """Fields, tension, forces and every column, on 2 ranks."""
+    run = runs[kind]
     compared = {name: values for name, values in run.series.items() if name not in OTHER}
     apart = {name: abs(np.diff(values)[0]) / max(1, abs(values[1])) for name, values in compared.items()}
     saved = frames(run.folder)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import PAPER, PETVES, PROGRAMS, ROOT, mpirun, run_petves, without_mpirun
+from harness import PAPER, PETVES, ROOT, mpirun, run_petves, run_scenes, without_mpirun
 from refusals import CELLS, SMALL, leaves_files, matches, stops_with
 
 
@@ -115,14 +115,10 @@ def rows() -> list[tuple[str, str, int, str]]:
 
 def with_files(options: str, folder: Path) -> str:
     """The page's scene and the options of a row, with the files that it names."""
-    for name, lines in CURVES.items():
-        path = folder / f"{name.replace(' ', '_')}.txt"
-        path.write_text("\n".join(lines) + "\n")
-        options = options.replace(f"{{curve: {name}}}", str(path))
-    for name, content in OPTIONS.items():
-        path = folder / f"{name.replace(' ', '_')}.opts"
-        path.write_bytes(content)
-        options = options.replace(f"{{opts: {name}}}", path.name)
+    for kind, name in re.findall(r"\{(curve|opts): (.*?)\}", options):
+        path = folder / f"{name.replace(' ', '_')}.{'txt' if kind == 'curve' else 'opts'}"
+        path.write_bytes("\n".join([*CURVES[name], ""]).encode() if kind == "curve" else OPTIONS[name])
+        options = options.replace(f"{{{kind}: {name}}}", str(path) if kind == "curve" else path.name)
     if options.startswith("-dim"):
         return options
     return f"{PAPER} {SMALL.removeprefix(CELLS) if options.startswith('-scheme_auto') else SMALL} {options}"
@@ -132,12 +128,10 @@ def with_files(options: str, folder: Path) -> str:
 def test_scene_is_refused(ranks, tmp_path):
     """Rows whose scene is refused, one after another in one process: this line and no other."""
     table = [(options, message) for group, options, n, message in rows() if group in SCENES and n == ranks]
-    lines = [f"-output_dir {tmp_path}/out {with_files(options, tmp_path)}" for options, _ in table]
-    (tmp_path / "lines").write_text("\n".join(lines) + "\n")
-    done = mpirun([str(PROGRAMS / "scenes"), str(tmp_path / "lines")], ranks)
-    found = done.stdout.splitlines()
-    assert done.returncode == 0 and len(found) == len(table) > 30 and not (tmp_path / "out" / "series.csv").exists()
-    assert not [case for case in zip(table, found) if not matches(f"1 {case[0][1]}", case[1])]
+    scenes = {k: with_files(options, tmp_path) for k, (options, _) in enumerate(table)}
+    found = list(run_scenes(tmp_path / "out", scenes, ranks, good=False).values())
+    assert len(found) > 30 and not [run for run in found if run.status != 1 or run.folder.exists()]
+    assert not [case for case in zip(table, found) if not matches(case[0][1], case[1].errors[0])]
 
 
 def sample() -> list[tuple[str, int, str]]:

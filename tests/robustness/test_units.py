@@ -1,11 +1,9 @@
 """One scene of each kind in other units of length and time, powers of two from 2^-40 to 2^40: the same rows and iterations.
 The units of options are those that -help says."""
 
-import shlex
-
 import numpy as np
 import pytest
-from harness import run_petves
+from harness import run_scenes
 from unit_powers import option_powers, powers
 
 from petves.dataset import unit
@@ -46,14 +44,17 @@ KINDS = {
 COUNTS = ("step", "tension_its", "bending_its", "coupled_its", "nsolve")
 
 
-def run(options: str, folder, length: float = 1, time: float = 1) -> dict:
-    words, units = shlex.split(options), option_powers()
+def scaled(options: str, length: float, time: float) -> str:
+    words, units = options.split(), option_powers()
     for k, word in enumerate(words):
         if word in units:
             factor = length ** units[word][0] * time ** units[word][1]
             words[k + 1] = ",".join(repr(float(x) * factor) for x in words[k + 1].split(","))
     tight = [] if "split" in options or "penalty" in options else ["-coupled_ksp_rtol", "1e-10"]
-    series = run_petves(folder, [*words, *tight]).series
+    return " ".join([*words, *tight])
+
+
+def scaled_back(series: dict, length: float, time: float) -> dict:
     scale = {name: length ** powers(unit(name))[0] * time ** powers(unit(name))[1] for name in series}
     return {name: column / scale[name] for name, column in series.items() if name != "wall"}
 
@@ -61,15 +62,16 @@ def run(options: str, folder, length: float = 1, time: float = 1) -> dict:
 @pytest.mark.parametrize("kind", KINDS)
 def test_units_change_nothing(kind, tmp_path):
     """Differences are over the largest number of any column of the same unit; of rates over 1/time as well."""
-    base = run(KINDS[kind], tmp_path / "0")
+    units = [(2.0**k, 2.0**m) for k, m in ((0, 0), (-40, 40), (40, -40), (-20, 0))]
+    runs = run_scenes(tmp_path, {n: scaled(KINDS[kind], *scales) for n, scales in enumerate(units)})
+    base, *others = (scaled_back(runs[n].series, *scales) for n, scales in enumerate(units))
     largest = {unit(name): 1.0 for name in base if powers(unit(name)) == (0, 0)}
     largest |= {unit(name): 1 / base["time"][-1] for name in base if powers(unit(name)) == (0, -1)}
     for name, column in base.items():
         largest[unit(name)] = max(largest.get(unit(name), 0), np.nanmax(np.abs(column), initial=0))
-    for k, m in ((-40, 40), (40, -40), (-20, 0)):
-        other = run(KINDS[kind], tmp_path / f"{k} {m}", 2.0**k, 2.0**m)
+    for other, scales in zip(others, units[1:]):
         for name, column in base.items():
             apart = np.nan_to_num(np.abs(other[name] - column))
             assert apart.shape == column.shape
             within = 0 if name in COUNTS else 1e-10 * largest[unit(name)]
-            assert apart.max() <= within, (name, k, m, column, other[name])
+            assert apart.max() <= within, (name, scales, column, other[name])

@@ -158,6 +158,21 @@ def run_petves(folder: Path, options: str | list, ranks: int = 1, good: bool = T
     return run
 
 
+def run_scenes(folder: Path, scenes: dict, ranks: int = 1, good: bool = True, **environment: str) -> dict:
+    """Run scenes one after another in one process (scenes.c), as its start takes longer than most of them; each in a folder of
+    its name. With `good` all must end well; the errors of one that was refused are its line."""
+    folder.mkdir(exist_ok=True)
+    places = [folder / str(name).replace(" ", "_") for name in scenes]
+    lines = [f"-output_dir {place} {options}\n" for place, options in zip(places, scenes.values())]
+    (folder / "scenes").write_text("".join(lines))
+    done = mpirun([str(PROGRAMS / "scenes"), str(folder / "scenes")], ranks, **environment)
+    ended = re.findall(r"(.*?)^([012]) ([^\n]*)\n", done.stdout, re.DOTALL | re.MULTILINE)
+    assert done.returncode == 0 and len(ended) == len(scenes), done.stdout + done.stderr
+    assert not good or not any(int(status) for _, status, _ in ended), done.stdout
+    runs = [Run(place, int(n), said, [line] if line else []) for place, (said, n, line) in zip(places, ended)]
+    return dict(zip(scenes, runs))
+
+
 def attribute(path: Path, name: str = "step"):
     """Of a checkpoint, or of another HDF5 file."""
     with h5py.File(path) as file:
