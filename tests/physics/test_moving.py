@@ -96,7 +96,7 @@ def test_order_in_time(tmp_path):
 
 
 def test_direct_ranks_and_restart(tmp_path):
-    """The sparse LU agrees, so do 2 and 3 ranks; a restart has the same bits, in run.h5 too."""
+    """1 and 3 ranks agree; a restart has the same bits, in run.h5 too."""
     body = ellipse(tmp_path, (1, 0.7), "velocity .6 .3\nrotation 3", (0.4, 0.27))
     options = f"{VESICLE} {body} -obstacle_frequency 4 -time_step .02 -output_every .02"
     options = options.replace("32,32", "24,24").replace("-vesicle_markers 41", "-vesicle_markers 31")

@@ -78,7 +78,7 @@ def at_step(folder: Path, step: int) -> str:
     raise AssertionError(f"no checkpoint of step {step} in {folder}")
 
 
-def agree(folder: Path, options: str, half: float, end: float, names, ranks=(2, 3), exact=None, **near) -> dict:
+def agree(folder: Path, options: str, half: float, end: float, names, ranks=(3,), exact=None, **near) -> dict:
     """Columns of other numbers of ranks are near, those of a run that goes on from `half` have the same bits (`exact`, or the
     same columns). Returns the runs "whole", of the ranks, "half" and "rest"."""
     found = {}
