@@ -25,7 +25,7 @@ class Kept:
     """Entries by name in one file, which is written again, as a whole, after each new one."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path
+        self.path, self.added = path, 0
         self.lock = Lock()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -39,6 +39,7 @@ class Kept:
         """Add an entry and write the file."""
         with self.lock:
             self.entries[name] = entry
+            self.added += 1
             temporary = self.path.with_suffix(".tmp")
             temporary.write_text(self.text())
             temporary.replace(self.path)

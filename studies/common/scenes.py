@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from studies.common.curves import radius
@@ -46,6 +47,11 @@ def cells(n: int, m: int | None = None) -> dict[str, str]:
 
 def option_file(name: str) -> dict[str, str]:
     """Return the options of runs/NAME.opts and their values, without -output_dir."""
+    return dict(_options_of(name))
+
+
+@cache
+def _options_of(name: str) -> dict[str, str]:
     lines = [line.split("#")[0].split() for line in (RUNS / f"{name}.opts").read_text().splitlines()]
     return {option: " ".join(value) for option, *value in filter(None, lines) if option != "-output_dir"}
 

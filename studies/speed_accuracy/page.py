@@ -46,8 +46,11 @@ def write(
     points = {one.name: tuple(p for p in one.points if not quick or one.work(p) < QUICK_WORK) for one in scenes}
     for repeat in range(1 if quick else ROUNDS):  # all scenes once before any is run again
         for one in scenes:
+            before = results.added
             run_points(results, one, points[one.name], repeat)
-            write_rows(folder / "chart.csv", results, scenes, points)
+            if results.added > before:
+                write_rows(folder / "chart.csv", results, scenes, points)
+    write_rows(folder / "chart.csv", results, scenes, points)
     paths, text = [folder / "chart.csv", folder / "recommended.csv"], []
     best: list[Row] = []
     for one in scenes:

@@ -41,15 +41,29 @@ FINE_INERTIA_CELLS, FINE_INERTIA_TOLERANCE = 24, "1e-4"
 """The same with inertia: cells a R0, markers 1.5 h apart."""
 
 
+@lru_cache(maxsize=1000)
+def _ellipse(reduced_area: float) -> np.ndarray:
+    """Return points of the ellipse with R0 = 1 about the origin, along x."""
+    t = 2 * np.pi * np.arange(2000) / 2000
+    low, high = 0.02, 1.0
+    for _ in range(60):
+        ratio = (low + high) / 2
+        points = np.stack([np.cos(t), ratio * np.sin(t)], axis=1)
+        length = np.hypot(*(points - np.roll(points, 1, axis=0)).T).sum()
+        low, high = (ratio, high) if 4 * np.pi * np.pi * ratio / length**2 < reduced_area else (low, ratio)
+    return points * (2 * np.pi / length)
+
+
 @lru_cache(maxsize=100)
 def _side_by_side(outline: tuple[complex, ...], up: float, gap: float) -> float:
     """Return how far along x a second outline, lower by `up`, lies from the first for the gap: their facing halves."""
     points = np.array(outline)
-    left, right = points[points.real >= 0], points[points.real <= 0]
+    apart = points[points.real >= 0][:, None] - points[points.real <= 0]
+    along, across = apart.real.copy(), (apart.imag + up) ** 2
     low, high = 0.0, 6.0
     for _ in range(40):
         x = (low + high) / 2
-        inside = x * x + up * up < 0.2 or np.abs(left[:, None] - (right + x - up * 1j)[None]).min() < gap
+        inside = x * x + up * up < 0.2 or ((along - x) ** 2 + across).min() < gap**2
         low, high = (x, high) if inside else (low, x)
     return x
 
@@ -70,16 +84,9 @@ class Scene:
 
     def ellipse(self) -> np.ndarray:
         """Return points of the ellipse about the origin, turned."""
-        t = 2 * np.pi * np.arange(2000) / 2000
-        low, high = 0.02, 1.0
-        for _ in range(60):
-            ratio = (low + high) / 2
-            points = np.stack([np.cos(t), ratio * np.sin(t)], axis=1)
-            length = np.hypot(*(points - np.roll(points, 1, axis=0)).T).sum()
-            low, high = (ratio, high) if 4 * np.pi * np.pi * ratio / length**2 < self.reduced_area else (low, ratio)
         turn = np.deg2rad(self.angle)
         matrix = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-        return points * (2 * np.pi / length) @ matrix
+        return _ellipse(self.reduced_area) @ matrix
 
     def centers(self) -> list[float]:
         """Return where the vesicles are for the gap wanted."""
