@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from harness import ROOT, run_petves
+from harness import ROOT, run_petves, run_scenes
 from studies.common import paper
 from studies.common.engine import Case, Results
 from studies.common.scenes import words
@@ -75,7 +75,6 @@ def test_tank_treading_within_the_wanted_error(wanted, cells, reduced_area, chi,
     assert wanted == 0.1 or ": enough\n" in run.stdout
     angle, frequency = paper.SHEAR["box"][reduced_area, chi]
     found = run.series["inclination"][-1] / np.pi, run.series["frequency"][-1]
-    print(f"{found[0] / angle - 1:+.2e} {found[1] / frequency - 1:+.2e} in {len(run.series['step']) - 1} steps")
     np.testing.assert_allclose(found, (angle, frequency), rtol=wanted)
 
 
@@ -86,7 +85,6 @@ def test_shape_at_rest_within_the_wanted_error(wanted, tmp_path):
     scene = f"{REST} {QUIET} -vesicle_area 1 -vesicle_angle 90"
     run = run_petves(tmp_path, f"{scene} -time_end {end} -scheme_auto {wanted}")
     found = run.series["energy_bending"][-1] * radius(0.7) / 0.01
-    print(f"{found / paper.REST[0.7][0] - 1:+.2e} in {len(run.series['step']) - 1} steps")
     assert found == pytest.approx(paper.REST[0.7][0], rel=wanted)
 
 
@@ -174,8 +172,8 @@ def test_box_that_is_the_question_stays(tmp_path):
 -fluid_gravity 0,-1 -vesicle_density_difference 1
 -obstacle_shape posts -obstacle_center 0.7,0.7 -domain_bc_x periodic
 -vesicle_packing 0.3 -vesicle_count 2 -domain_bc_x periodic -vesicle_packing_gap 0.1"""
-    for number, scene in enumerate(scenes.splitlines()):
-        text = run_petves(tmp_path / f"{number}", f"{QUIET} {scene} -time_end 0 -scheme_auto 1e-2").stdout
+    scenes = {k: f"{QUIET} {scene} -time_end 0 -scheme_auto 1e-2" for k, scene in enumerate(scenes.splitlines())}
+    for text in (run.stdout for run in run_scenes(tmp_path, scenes).values()):
         assert domain(text, "-domain_box") == [-1, 1, -1, 1] and "yours to give" in settings(text)["-domain_box"][1]
         assert "free" not in text and domain(text, "-domain_cells")[0] < 128
 
@@ -187,9 +185,9 @@ def test_grid_for_a_box(inertia, tmp_path):
     scene += f" -vesicle_area 1 -fluid_inertia {inertia} -time_end 0"
     cells = {}
     near = (1e-2, 0.5)
-    for wanted, height in ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), near, (1e-3, 0.6)):
-        chosen = f"-vesicle_center 3,{height} -scheme_auto {wanted}"
-        text = run_petves(tmp_path / f"{wanted}_{height}", f"{scene} {chosen}").stdout
+    cases = ((0.1, 2.5), (1e-2, 2.5), (1e-3, 2.5), near, (1e-3, 0.6))
+    scenes = {case: f"{scene} -vesicle_center 3,{case[1]} -scheme_auto {case[0]}" for case in cases}
+    for (wanted, height), text in ((case, run.stdout) for case, run in run_scenes(tmp_path, scenes).items()):
         nx, ny = domain(text, "-domain_cells")
         beyond = inertia == "unsteady" and (wanted, height) == (1e-3, 0.6)
         assert 5 * nx == 12 * ny and ": enough\n" in text
@@ -220,6 +218,7 @@ def within(found: float, table: str, values: list[str]) -> None:
     assert 0.99 * measured(table, values[0]) <= found <= 1.15 * worst, (table, values[0])
 
 
+WALL = re.compile(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0")
 FLUIDS = {
     "-fluid_inertia none": ("cells_a_radius", "cells_to_wall"),
     "-fluid_inertia none -coupling_box_part false": ("cells_a_radius", "cells_to_wall_plain"),
@@ -228,30 +227,24 @@ FLUIDS = {
 
 
 @pytest.mark.parametrize("fluid", FLUIDS)
-@pytest.mark.parametrize("first", range(5))
-def test_grid_and_walls_are_what_was_measured(first, fluid, tmp_path):
-    """What a grid and a wall of the calibration are said to leave."""
-    cells = ["2", "3", "4", "6", "8"]
-    scene = f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 {fluid} -scheme_auto 0.1"
-    n = 10 * int(cells[first])
-    text = run_petves(tmp_path / "a", f"{scene} -domain_box -5,5,-5,5 -domain_cells {n},{n}").stdout
-    within(float(re.search(r"R0/h = .*leaves up to ([^\s:]+)", text)[1]), FLUIDS[fluid][0], cells[first:])
-    gaps = ["0.4", "0.6", "0.8", "1.2", "1.6", "2.4"]
-    low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 1.02 * float(gaps[first]) / 8
-    text = run_petves(tmp_path / "b", f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
-    near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
-    within(float(found) / (float(near) / 8), FLUIDS[fluid][1], gaps[first:])
-
-
-def test_walls_farther_than_measured(tmp_path):
-    """Without the box part what the grid leaves of a wall goes on as h^2 over the gap, from the last that was measured."""
-    scene = f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 -fluid_inertia unsteady"
-    scene += " -scheme_auto 0.1"
-    low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 0.8
-    text = run_petves(tmp_path, f"{scene} -domain_box -5,5,{low},{low + 10} -domain_cells 80,80").stdout
-    near, found = re.search(r"nearest wall: (\S+) cells, which leaves up to (\S+) of R0", text).groups()
-    last = measured("cells_to_wall_plain", "3.2")
-    assert float(found) == pytest.approx(last * 3.2**2 / 8 / float(near), rel=0.05)
+def test_grid_and_walls_are_what_was_measured(fluid, tmp_path):
+    """What a grid and a wall of the calibration are said to leave. Without the box part what the grid leaves of a wall farther
+    away goes on as h^2 over the gap, from the last that was measured."""
+    cells, gaps = ["2", "3", "4", "6", "8"], ["0.4", "0.6", "0.8", "1.2", "1.6", "2.4"]
+    scene = f"{QUIET} -vesicle_area {0.7 * np.pi} -vesicle_center 0,0 -time_end 0 {fluid} -scheme_auto 0.1 -domain_box"
+    scenes = {("grid", n): f"{scene} -5,5,-5,5 -domain_cells {n}0,{n}0" for n in cells}
+    for gap in (*gaps[:5], "6.2745098"):
+        low = unseen.Scene("box", 1, 0.7, 1, 0, 0.5, 8).ellipse()[:, 1].min() - 1.02 * float(gap) / 8
+        scenes["wall", gap] = f"{scene} -5,5,{low},{low + 10} -domain_cells 80,80"
+    texts = {key: run.stdout for key, run in run_scenes(tmp_path, scenes).items()}
+    for first, n in enumerate(cells):
+        found = re.search(r"R0/h = .*leaves up to ([^\s:]+)", texts["grid", n])[1]
+        within(float(found), FLUIDS[fluid][0], cells[first:])
+        near, found = map(float, WALL.search(texts["wall", gaps[first]]).groups())
+        within(found / (near / 8), FLUIDS[fluid][1], gaps[first:])
+    if fluid == "-fluid_inertia unsteady":
+        near, found = map(float, WALL.search(texts["wall", "6.2745098"]).groups())
+        assert found == pytest.approx(measured("cells_to_wall_plain", "3.2") * 3.2**2 / 8 / near, rel=0.05)
 
 
 FREE = "-domain_box -4,4,-4,4 -domain_cells 32,32 -domain_bc_x free -domain_bc_y free"
@@ -301,9 +294,10 @@ def measured_in_space(volume: float, degree: int, table: str = "degree") -> floa
 @pytest.mark.parametrize("wanted", WANTED)
 def test_degree_and_steps_are_what_was_measured(wanted, tmp_path):
     """In three dimensions: printed errors are the worst of the calibration, and each leaves room for the other."""
-    for volume in (0.95, 0.9, 0.8, 0.7)[: 4 if wanted > 1e-4 else 3]:
-        scene = f"-dim 3 -flow_type shear -flow_chi 10 -vesicle_reduced_volume {volume} -time_end 0 {QUIET}"
-        chosen = settings(run_petves(tmp_path / f"{volume}", f"{scene} -scheme_auto {wanted}").stdout)
+    scene = f"-dim 3 -flow_type shear -flow_chi 10 -time_end 0 {QUIET} -scheme_auto {wanted} -vesicle_reduced_volume"
+    scenes = {volume: f"{scene} {volume}" for volume in (0.95, 0.9, 0.8, 0.7)[: 4 if wanted > 1e-4 else 3]}
+    for volume, run in run_scenes(tmp_path, scenes).items():
+        chosen = settings(run.stdout)
         for name, table in (("-sphere_degree", None), ("-time_adapt_tol", "space_tol_1")):
             value, why = chosen[name]
             worst = measured(table, value) if table else measured_in_space(volume, int(value))
@@ -333,5 +327,4 @@ def test_treading_in_space_within_the_wanted_error(wanted, volume, angle, tmp_pa
     """The steady angle of the independent calculation of test_space.py."""
     scene = f"-dim 3 -flow_type shear -vesicle_bending 0.1 -vesicle_reduced_volume {volume} -time_end 16 {QUIET}"
     run = run_petves(tmp_path, f"{scene} -scheme_auto {wanted}")
-    print(f"{run.series['inclination'][-1] / np.pi / angle - 1:+.2e} in {len(run.series['step']) - 1} steps")
     assert run.series["inclination"][-1] / np.pi == pytest.approx(angle, rel=wanted)

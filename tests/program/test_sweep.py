@@ -96,9 +96,8 @@ def test_a_grid_that_grows_runs_what_is_new(sweep, tmp_path):
     assert status == 0 and found == [(v, t, "done") for v in "12" for t in ("0.02", "0.04")]
     for row in rows:
         series = read_series(tmp_path / "grid" / row["folder"] / "series.csv")
-        assert float(row["energy_bending"]) == series["energy_bending"][-1] and float(row["time"]) == float(
-            row["time_end"]
-        )
+        assert float(row["energy_bending"]) == series["energy_bending"][-1]
+        assert float(row["time"]) == float(row["time_end"])
     times = lambda: {path: path.stat().st_mtime_ns for path in (tmp_path / "grid").glob("*/series.csv")}
     before, interrupted = times(), tmp_path / "grid" / rows[0]["folder"]
     (interrupted / "status.json").unlink()  # as after a kill: its checkpoint is there

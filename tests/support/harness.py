@@ -163,7 +163,7 @@ def run_scenes(folder: Path, scenes: dict, ranks: int = 1, good: bool = True, **
     """Run scenes one after another in one process (scenes.c), as its start takes longer than most of them; each in a folder of
     its name. With `good` all must end well; the errors of one that was refused are its line."""
     folder.mkdir(exist_ok=True)
-    places = [folder / str(name).replace(" ", "_") for name in scenes]
+    places = [folder / re.sub(r"\W", "_", str(name)) for name in scenes]
     lines = [f"-output_dir {place} {options}\n" for place, options in zip(places, scenes.values())]
     (folder / "scenes").write_text("".join(lines))
     done = mpirun([str(PROGRAMS / "scenes"), str(folder / "scenes")], ranks, **environment)

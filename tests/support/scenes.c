@@ -1,6 +1,6 @@
-/* Runs of several scenes one after another in one process: `scenes FILE`, a line of options each. Prints a line a
-   scene: 0 good, 2 a step failed, 1 refused, with the message. For memory checkers, whose start is dear
-   (test_valgrind.py). */
+/* Runs of several scenes one after another in one process: `scenes FILE`, a line of options each. Prints what is said
+   of a scene before its steps and a line: 0 good, 2 a step failed, 1 refused, with the message. For scenes that take
+   less than a start of the program, and for memory checkers, whose start is dear (test_valgrind.py). */
 #include "petves.h"
 #include <stdio.h>
 
@@ -15,7 +15,8 @@ static PetscErrorCode RunScene(const char line[], char message[], PetscBool *goo
   PetscCall(PetscOptionsCreate(&options));
   PetscCall(PetscOptionsInsertString(options, line));
   PetscCall(PetvesEnter(options, message, &depth));
-  error = SimulationCreate(PETSC_COMM_WORLD, &simulation);
+  error = PetvesSetQuiet(PETSC_FALSE);
+  if (!error) error = SimulationCreate(PETSC_COMM_WORLD, &simulation);
   if (!error) error = PetvesSetQuiet(PETSC_TRUE);
   if (!error) error = SimulationRun(simulation, good);
   PetscCall(SimulationDestroy(&simulation));
