@@ -57,10 +57,8 @@ def test_a_degree_too_small_is_named(tmp_path):
 
 def test_a_sphere_settles(tmp_path):
     """Its membrane is incompressible, so it falls as a rigid one: 2/9 of weight R0^2/nu (Stokes)."""
-    options = (
-        f"{SPACE} -vesicle_reduced_volume 1 -fluid_gravity 0,0,-2 -vesicle_density_difference 0.5 -fluid_viscosity 3"
-    )
-    last = run_petves(tmp_path / "run", f"{options} -time_step 0.1 -time_end 0.5").series
+    options = f"{SPACE} -vesicle_reduced_volume 1 -fluid_gravity 0,0,-2 -vesicle_density_difference 0.5"
+    last = run_petves(tmp_path / "run", f"{options} -fluid_viscosity 3 -time_step 0.1 -time_end 0.5").series
     assert abs(last["velocity_z"][-1] + 2 / 27) < 1e-7 and abs(last["velocity_x"][-1]) < 1e-9
 
 
@@ -81,12 +79,12 @@ def test_orders_in_time(tmp_path):
 
 
 def test_steps_by_error(tmp_path):
-    """The angle at t = 2 follows the tolerance: fixed steps of 0.01 are the reference. Steps grow with the motion's end."""
+    """The angle at t = 2 follows the tolerance: fixed steps of third order are the reference. Steps grow with the motion's end."""
 
     def last(name, steps):
         return run_petves(tmp_path / name, f"{SHEAR} -vesicle_reduced_volume 0.9 -time_end 2 {steps}").series
 
-    fine = last("fine", "-time_step 0.01")["inclination"][-1]
+    fine = last("fine", "-scheme_order 3 -time_step 0.02")["inclination"][-1]
     wrong = []
     for tolerance in (1e-3, 1e-4):
         run = last(str(tolerance), f"-time_step 0.2 -time_adapt error -time_adapt_tol {tolerance}")
@@ -104,12 +102,11 @@ def test_turned_in_space(tmp_path):
     assert np.allclose(rows, rows[0], rtol=1e-9)
 
 
-@pytest.mark.parametrize(
-    "steps", ["-time_step 0.2 -vesicle_viscosity_ratio 5,2", "-time_step 1 -time_adapt error -time_adapt_tol 1e-3"]
-)
-def test_one_rank_or_three(steps, tmp_path):
+@pytest.mark.parametrize("step", ["0.2 -vesicle_viscosity_ratio 5,2", "1 -time_adapt error -time_adapt_tol 1e-3"])
+def test_one_rank_or_three(step, tmp_path):
     """Two vesicles that pass one another, also from a checkpoint on, which gives the same bits."""
-    pair = f"{SHEAR} -vesicle_count 2 -vesicle_center -1.6,0.3,0,1.6,-0.3,0 {steps} -output_every 1 -coupled_ksp_rtol 1e-12"
+    pair = f"{SHEAR} -sphere_degree 6 -vesicle_count 2 -vesicle_center -1.6,0.3,0,1.6,-0.3,0 -time_step {step}"
+    pair += " -output_every 1 -coupled_ksp_rtol 1e-12"
     one, three = (run_petves(tmp_path / str(n), f"{pair} -time_end 2", n).series for n in (1, 3))
     for name in ("inclination_1", "center_x_2", "tension_max", "energy_bending"):
         assert np.allclose(one[name], three[name], rtol=1e-9)
@@ -134,12 +131,12 @@ def test_repulsion_keeps_a_film(tmp_path):
     push = f"{pair} -contact_repulsion 50 -contact_repulsion_range 0.2"
     bare, pushed, three = (
         run_petves(tmp_path / name, options, ranks).series
-        for name, options, ranks in (("bare", pair, 1), ("pushed", push, 1), ("three", push, 3))
+        for name, options, ranks in (("bare", pair, 1), ("pushed", push, 1), ("three", f"{push} -time_end 0.4", 3))
     )
     assert pushed["gap"].min() > bare["gap"].min() + 0.015
     assert (bare["energy_contact"] == 0).all() and (np.diff(pushed["energy_contact"][4:]) > 0).all()
     assert pushed["coupled_its"].max() < bare["coupled_its"].max() + 3
-    assert np.allclose(pushed["energy_contact"], three["energy_contact"], rtol=1e-5)
+    assert np.allclose(pushed["energy_contact"][:5], three["energy_contact"], rtol=1e-5)
 
 
 def test_adhesion_draws_vesicles_together(tmp_path):
@@ -189,9 +186,8 @@ def test_a_run_begins_where_another_ended(tmp_path):
     run = run_petves(tmp_path / "on", options)
     again = petves.load(run.folder, kind="numpy")
     assert np.array_equal(again.coefficients[0], first.coefficients[-1])
-    larger = petves.load(
-        run_petves(tmp_path / "large", f"{options} -vesicle_radius 2 -vesicle_center -9,0,0,9,0,0").folder
-    )
+    large = run_petves(tmp_path / "large", f"{options} -vesicle_radius 2 -vesicle_center -9,0,0,9,0,0")
+    larger = petves.load(large.folder)
     assert np.allclose(larger.volume_1[0], 32 / 3 * np.pi, rtol=1e-14)
     assert np.allclose(larger.axis_long_1[0], 2 * again.series["axis_long_1"][0], rtol=1e-12)
     assert np.allclose(larger.center_x_1[0], again.series["center_x_1"][0] - 9, rtol=1e-12)
