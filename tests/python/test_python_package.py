@@ -84,6 +84,7 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
 
     @pytest.mark.parametrize("name", EXAMPLES)
     def test_example_runs(name, tmp_path):
+        assert len(EXAMPLES) == 7
         ranks = 2 if name == "quick_start" else 1
         script = str(ROOT / "python" / "examples" / f"{name}.py")
         done = mpirun([sys.executable, script, str(tmp_path), "--short"], ranks, **PACKAGE)
@@ -98,9 +99,6 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         refused = ": a simulation has no attribute to set; options are given when it is made"
         expected = [f"{scene}t = 0.02 of 0.02, out>", f"foo{refused}", f"time{refused}", f"{scene}closed, out>"]
         assert done.stdout.splitlines() == expected, done.stderr
-
-    def test_seven_examples():
-        assert len(EXAMPLES) == 7
 
     def test_pip_installs_a_package_that_runs(tmp_path):
         shutil.copytree(ROOT / "python", tmp_path / "tree" / "python", ignore=shutil.ignore_patterns("__pycache__"))
@@ -121,35 +119,6 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
         words = ["sweep", str(tmp_path / "s"), "--vary", "time_end", "0"]
         python([str(tmp_path / "site" / "bin" / "petves"), *words], PYTHONPATH=str(tmp_path / "site"))
         assert list((tmp_path / "s").glob("*/run.h5"))
-
-    def test_make_install_installs_a_package_that_runs(tmp_path):
-        """Into ~/.local, where Debian's Python looks too."""
-        prefix = tmp_path / ".local"
-        words = ["make", "-C", str(ROOT), "install", f"PREFIX={prefix}", "BIN=bin", "LIBDIR=lib"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=300)
-        assert done.returncode == 0, done.stderr
-        (site,) = prefix.glob("lib/python3*/site-packages")
-        assert (site / "petves" / "py.typed").is_file() and (site / "petves" / "__init__.pyi").is_file()
-        done = python(["-c", RUN], HOME=str(tmp_path))
-        assert done.stdout.split() == [str(site / "petves" / "__init__.py"), str(prefix / "lib" / "libpetves.so")]
-        code = "from petves.program import scene_file; print(scene_file('stirring'))"
-        scenes = (
-            python(["-m", "petves", "scenes"], HOME=str(tmp_path)).stdout
-            + python(["-c", code], HOME=str(tmp_path)).stdout
-        )
-        assert "\nstirring " in scenes and scenes.endswith(f"\n{prefix}/share/petves/runs/stirring.opts\n")
-        # the tools find bin/petves under the prefix
-        python(["-m", "petves", "sweep", str(prefix / "s"), "--vary", "time_end", "0"], HOME=str(tmp_path))
-        environment = {name: value for name, value in os.environ.items() if not name.startswith(("PETVES", "PYTHON"))}
-        words = [prefix / "bin" / "petves", "compare", prefix / "s" / "time_end=0", prefix / "s" / "time_end=0"]
-        done = subprocess.run(words, env=environment | ENVIRONMENT, capture_output=True, text=True, cwd=prefix)
-        assert done.returncode == 0, "and the program finds them\n" + done.stderr
-        assert (prefix / "s" / "time_end=0" / "compare.png").is_file()
-        left = "man/man1/petves.1 bash-completion/completions/petves petves/runs/shear.opts doc/petves/README.md"
-        left += " doc/petves/docs/options.md doc/petves/docs/gallery/capillary.png"
-        assert all((prefix / "share" / name).is_file() for name in left.split())
-        done = subprocess.run(["make", "-C", str(ROOT), "uninstall", f"PREFIX={prefix}"], capture_output=True)
-        assert done.returncode == 0 and not [path for path in prefix.rglob("*petves*") if path.is_file()]
 
     def reference() -> list[str]:
         """The names whose docstrings docs/api.md shows, in the site."""

@@ -28,10 +28,17 @@ int main(int argc, char **argv) {
 }
 """
 
+INSTALLED = """
+import petves
+from petves.program import scene_file
+with petves.Simulation(domain_cells=(24, 24), vesicle_semi_axes=(0.4, 0.5), time_end=0.01) as sim: sim.run()
+print(petves.__file__, petves.library.library()._name, scene_file('stirring'))
+"""
+
 
 def run(words: list, folder: Path = ROOT, **environment: str) -> str:
     """Run a command without this test's own settings of where petves is; return what it prints."""
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(("PETVES", "PYTHONPATH"))}
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(("PETVES", "PYTHON"))}
     environment = {**kept, **ENVIRONMENT, **environment}
     how = dict(capture_output=True, text=True, timeout=300, cwd=folder)
     done = subprocess.run(list(map(str, words)), env=environment, **how)
@@ -159,9 +166,9 @@ if not SANITIZE and not OWN:
 
     @pytest.fixture(scope="module")
     def prefix(tmp_path_factory):
-        """petves after make install into a folder that had nothing."""
-        folder = tmp_path_factory.mktemp("prefix")
-        run(["make", "-s", "install", f"PREFIX={folder}"])
+        """petves after make install into a folder that had nothing: ~/.local, where Debian's Python looks too."""
+        folder = tmp_path_factory.mktemp("home") / ".local"
+        run(["make", "-s", "install", f"PREFIX={folder}", "BIN=bin", "LIBDIR=lib"])
         return folder
 
     @pytest.mark.xdist_group("prefix")
@@ -187,6 +194,24 @@ if not SANITIZE and not OWN:
         path = f"{prefix / 'bin'}:{os.environ['PATH']}"
         found = run([sys.executable, "-c", code], tmp_path, PATH=path, PYTHONPATH=str(site)).split()
         assert found == [str(prefix / "lib" / "libpetves.so"), str(site / "petves" / "__init__.py")]
+
+    @pytest.mark.xdist_group("prefix")
+    def test_an_installed_package_runs_and_is_removed(prefix):
+        (site,) = prefix.glob("lib/python3*/site-packages")
+        assert (site / "petves" / "py.typed").is_file() and (site / "petves" / "__init__.pyi").is_file()
+        python = lambda *words: run(["/usr/bin/python3", *words], HOME=str(prefix.parent))
+        found = [str(site / "petves" / "__init__.py"), str(prefix / "lib" / "libpetves.so")]
+        assert python("-c", INSTALLED).split() == [*found, f"{prefix}/share/petves/runs/stirring.opts"]
+        assert "\nstirring " in python("-m", "petves", "scenes")
+        # the tools find bin/petves under the prefix, and the program finds them
+        python("-m", "petves", "sweep", str(prefix / "s"), "--vary", "time_end", "0")
+        run([prefix / "bin" / "petves", "compare", prefix / "s" / "time_end=0", prefix / "s" / "time_end=0"], prefix)
+        assert (prefix / "s" / "time_end=0" / "compare.png").is_file()
+        left = "man/man1/petves.1 bash-completion/completions/petves petves/runs/shear.opts doc/petves/README.md"
+        left += " doc/petves/docs/options.md doc/petves/docs/gallery/capillary.png"
+        assert all((prefix / "share" / name).is_file() for name in left.split())
+        run(["make", "-s", "uninstall", f"PREFIX={prefix}"])
+        assert not [path for path in prefix.rglob("*petves*") if path.is_file()]
 
     @pytest.mark.xdist_group("prefix")
     def test_archive_is_what_the_repository_has_and_builds(tmp_path):
