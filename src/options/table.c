@@ -25,8 +25,8 @@ PetscErrorCode OptionsRead(MPI_Comm comm, const char title[], PetscInt n, const 
     const char *value = NULL; /* as long as it may be */
     if (t->given[i]) PetscCall(PetscOptionsFindPair(NULL, NULL, row[i].name, &value, NULL));
     if (!value) value = t->given[i] ? "" : row[i].value;
-    PetscCheck(!t->given[i] || *value || row[i].type == OPT_BOOL, comm, PETSC_ERR_USER_INPUT,
-               "%s: given without a value; allowed: %s", row[i].name, *range ? range : row[i].help);
+    PetvesCheck(!t->given[i] || *value || row[i].type == OPT_BOOL, comm, "%s: given without a value; allowed: %s",
+                row[i].name, *range ? range : row[i].help);
     PetscCall(OptionParse(comm, &row[i], value, OptionPlace(t, values, i)));
   }
   PetscOptionsEnd();

@@ -46,76 +46,43 @@ static PetscErrorCode OptionParseNumber(MPI_Comm comm, const OptionRow *o, const
   if (strcmp(text, all)) PetscCall(PetscSNPrintf(part, sizeof(part), "\"%.100s\" is ", text));
   if (strchr(o->range, '|')) {
     const PetscInt index = OptionIndexInList(o->range, text);
-    PetscCheck(index >= 0, comm, PETSC_ERR_USER_INPUT, "%s %s: %sunknown; allowed: %s", o->name, all, part, o->range);
+    PetvesCheck(index >= 0, comm, "%s %s: %sunknown; allowed: %s", o->name, all, part, o->range);
     *x = (PetscReal)index;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCheck(OptionParseReal(text, x) &&
-                 (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
-             comm, PETSC_ERR_USER_INPUT, "%s %s: %snot %s; allowed: %s%s%s", o->name, all, part, what, what,
-             strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
-  PetscCheck(OptionInRange(o->range, *x), comm, PETSC_ERR_USER_INPUT, "%s %s: %sout of range; allowed: %s %s", o->name,
-             all, part, what, o->range);
+  PetvesCheck(OptionParseReal(text, x) &&
+                  (!integer || (*x == PetscFloorReal(*x) && PetscAbsReal(*x) < (PetscReal)PETSC_MAX_INT)),
+              comm, "%s %s: %snot %s; allowed: %s%s%s", o->name, all, part, what, what,
+              strcmp(o->range, "any") ? ", " : "", strcmp(o->range, "any") ? o->range : "");
+  PetvesCheck(OptionInRange(o->range, *x), comm, "%s %s: %sout of range; allowed: %s %s", o->name, all, part, what,
+              o->range);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers between commas, x to be freed. */
+/* Numbers between commas, or one where the option is no list; x to be freed. */
 static PetscErrorCode OptionParseNumbers(MPI_Comm comm, const OptionRow *o, const char *text, PetscInt *n,
                                          PetscReal **x) {
-  const char *const all = text;
+  const char *const comma = o->type == OPT_REALS || o->type == OPT_INTS ? "," : "", *const all = text;
   char *item;
   PetscFunctionBeginUser;
   *n = 1;
-  for (const char *p = text; *p; p++) *n += *p == ',';
+  for (const char *p = text; *p; p++) *n += *p == *comma;
   PetscCall(PetscMalloc1(*n, x));
   PetscCall(PetscMalloc1(strlen(text) + 1, &item));
   for (PetscInt k = 0; k < *n; k++) {
-    const size_t length = strcspn(text, ",");
+    const size_t length = strcspn(text, comma);
     PetscCall(PetscStrncpy(item, text, length + 1));
     PetscCall(OptionParseNumber(comm, o, all, item, *x + k));
     text += length + 1;
   }
-  PetscCall(PetscFree(item));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(PetscFree(item));
 }
 
-static PetscErrorCode OptionParseList(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
-  IntList *ints = (IntList *)place;
-  RealList *reals = (RealList *)place;
-  PetscReal *x;
-  PetscInt n;
+static PetscErrorCode OptionParseTruth(MPI_Comm comm, const OptionRow *o, const char *text, PetscBool *truth) {
+  const PetscInt yes = OptionIndexInList("|true|yes|on|1", text), no = OptionIndexInList("false|no|off|0", text);
   PetscFunctionBeginUser;
-  PetscCall(OptionParseNumbers(comm, o, text, &n, &x));
-  if (o->type == OPT_REALS) {
-    PetscCall(PetscFree(reals->v));
-    reals->n = n;
-    reals->v = x;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscFree(ints->v));
-  PetscCall(PetscMalloc1(n, &ints->v));
-  ints->n = n;
-  for (PetscInt k = 0; k < n; k++) ints->v[k] = (PetscInt)x[k];
-  PetscCall(PetscFree(x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* One word: a truth, or a name of the range. */
-static PetscErrorCode OptionParseWord(MPI_Comm comm, const OptionRow *o, const char *text, void *place) {
-  PetscReal index;
-  PetscFunctionBeginUser;
-  if (o->type == OPT_BOOL) {
-    const PetscInt yes = OptionIndexInList("|true|yes|on|1", text), no = OptionIndexInList("false|no|off|0", text);
-    PetscCheck(yes >= 0 || no >= 0 || !*text, comm, PETSC_ERR_USER_INPUT, "%s %s: allowed: true or false", o->name,
-               text);
-    *(PetscBool *)place = no >= 0 ? PETSC_FALSE : PETSC_TRUE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(OptionParseNumber(comm, o, text, text, &index));
-  if (o->type == OPT_ENUM)
-    *(PetscInt *)place = (PetscInt)index;
-  else
-    PetscCall(PetscStrncpy((char *)place, text, OPTION_MAX_NAME));
+  PetvesCheck(yes >= 0 || no >= 0 || !*text, comm, "%s %s: allowed: true or false", o->name, text);
+  *truth = no < 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,41 +92,41 @@ static PetscErrorCode OptionParsePath(MPI_Comm comm, const OptionRow *o, const c
   PetscFunctionBeginUser;
   for (const char *c = text; *c && plain; c++)
     plain = iscntrl((unsigned char)*c) || *c == '"' ? PETSC_FALSE : PETSC_TRUE;
-  PetscCheck(
-      plain, comm, PETSC_ERR_USER_INPUT,
+  PetvesCheck(
+      plain, comm,
       "%s %s: no options file can hold this name; allowed: no double quote or control character in it, and no dash "
       "before it",
       o->name, text);
-  PetscCheck(strlen(text) < PETSC_MAX_PATH_LEN - 64, comm, PETSC_ERR_USER_INPUT,
-             "%s: a name of %d characters; allowed: less than %d", o->name, (int)strlen(text), PETSC_MAX_PATH_LEN - 64);
+  PetvesCheck(strlen(text) < PETSC_MAX_PATH_LEN - 64, comm, "%s: a name of %d characters; allowed: less than %d",
+              o->name, (int)strlen(text), PETSC_MAX_PATH_LEN - 64);
   PetscCall(PetscStrncpy(path, text, PETSC_MAX_PATH_LEN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[], void *place) {
-  PetscReal x = 0;
+  RealList *reals = (RealList *)place;
+  IntList *ints = (IntList *)place;
+  PetscReal *x;
+  PetscInt n;
   PetscFunctionBeginUser;
-  switch (o->type) {
-  case OPT_REAL:
-    PetscCall(OptionParseNumber(comm, o, text, text, &x));
-    *(PetscReal *)place = x;
-    break;
-  case OPT_INT:
-    PetscCall(OptionParseNumber(comm, o, text, text, &x));
-    *(PetscInt *)place = (PetscInt)x;
-    break;
-  case OPT_PATH:
-  case OPT_TEXT:
-    PetscCall(OptionParsePath(comm, o, text, (char *)place));
-    break;
-  case OPT_REALS:
-  case OPT_INTS:
-    PetscCall(OptionParseList(comm, o, text, place));
-    break;
-  default:
-    PetscCall(OptionParseWord(comm, o, text, place));
+  if (o->type == OPT_BOOL) PetscFunctionReturn(OptionParseTruth(comm, o, text, (PetscBool *)place));
+  if (o->type == OPT_PATH || o->type == OPT_TEXT) PetscFunctionReturn(OptionParsePath(comm, o, text, (char *)place));
+  PetscCall(OptionParseNumbers(comm, o, text, &n, &x));
+  if (o->type == OPT_NAME) PetscCall(PetscStrncpy((char *)place, text, OPTION_MAX_NAME));
+  if (o->type == OPT_REAL) *(PetscReal *)place = *x;
+  if (o->type == OPT_INT || o->type == OPT_ENUM) *(PetscInt *)place = (PetscInt)*x;
+  if (o->type == OPT_REALS) {
+    PetscCall(PetscFree(reals->v));
+    *reals = (RealList){n, x};
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->type == OPT_INTS) {
+    PetscCall(PetscFree(ints->v));
+    PetscCall(PetscMalloc1(n, &ints->v));
+    ints->n = n;
+    for (PetscInt k = 0; k < n; k++) ints->v[k] = (PetscInt)x[k];
+  }
+  PetscFunctionReturn(PetscFree(x));
 }
 
 PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {

@@ -150,17 +150,16 @@ static PetscErrorCode OptionRefuse(const OptionTable *t, const void *values, con
   while (owner->prefix && strncmp(owner->prefix, name, strlen(owner->prefix))) owner++;
   if (owner->prefix) PetscCall(OptionValue(t, values, OptionFind(t, owner->name), in_force, sizeof(in_force)));
   for (PetscInt i = 0; others[i] && !known; i++) PetscCall(PetscStrcmp(others[i], name, &known));
-  PetscCheck(!owner->prefix || !strcmp(in_force, owner->value), t->comm, PETSC_ERR_USER_INPUT,
-             "%s: not used by this scene; allowed: with %s %s (-allow_unused_options goes on)", given, owner->name,
-             owner->value);
-  PetscCheck(!known, t->comm, PETSC_ERR_USER_INPUT,
-             "%s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", given);
+  PetvesCheck(!owner->prefix || !strcmp(in_force, owner->value), t->comm,
+              "%s: not used by this scene; allowed: with %s %s (-allow_unused_options goes on)", given, owner->name,
+              owner->value);
+  PetvesCheck(!known, t->comm,
+              "%s: not used by this scene's solvers as they are set up (-allow_unused_options goes on)", given);
   while (suggestion->names && !NameIsAmong(t, suggestion->names, name)) suggestion++;
-  PetscCheck(!suggestion->names, t->comm, PETSC_ERR_USER_INPUT,
-             "%s: no such option; %s (-allow_unused_options goes on)", given, suggestion->say);
+  PetvesCheck(!suggestion->names, t->comm, "%s: no such option; %s (-allow_unused_options goes on)", given,
+              suggestion->say);
   meant = NameMeant(t, others, name);
-  PetscCheck(!meant, t->comm, PETSC_ERR_USER_INPUT, "%s: no such option; %s is meant? (-allow_unused_options goes on)",
-             given, meant);
+  PetvesCheck(!meant, t->comm, "%s: no such option; %s is meant? (-allow_unused_options goes on)", given, meant);
   SETERRQ(t->comm, PETSC_ERR_USER_INPUT,
           "%s: no such option; petves -help options lists them (-allow_unused_options goes on)", given);
 }

@@ -1,5 +1,6 @@
 /* -scheme_auto: what grids leave, by what was measured (docs/speed_accuracy/calibration.csv). */
 #include "scene/auto.h"
+#include "scene/checks.h"
 #include "scene/properties.h"
 
 /* Worst errors over vesicles in shear, in a channel, between four walls, in pairs and with viscosity contrast, by R0/h;
@@ -104,62 +105,55 @@ PetscBool SceneWallCells(AutoFluid fluid, const PetscReal box[4], PetscReal h, P
 
 #define MARKERS 45
 
+/* clang-format off */
 /* Print the error of walls that are near to a vesicle, and the grid that would be enough. */
 static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
-  const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid);
+  const PetscReal R0 = SceneSmallestRadius(scene), h = FluidSpecCellSize(&scene->fluid), wanted = scene->scheme.wanted;
   const Shape *shape = &scene->shape;
   const CurveRoom room = SceneRoom(scene);
-  PetscInt side;
+  char what[PETVES_MAX_MESSAGE], leaves[PETVES_MAX_MESSAGE];
+  PetscInt side, cells[2];
   const PetscReal gap = CurveWallGap(shape->start[shape->vesicles], shape->X, &room, &side);
-  const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0, wanted = scene->scheme.wanted;
-  char leaves[64] = "more than was measured", what[128] = "enough";
-  PetscInt cells[2];
+  const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0;
+  const PetscBool finer = SceneWallCells(fluid, scene->fluid.box, h, R0, gap, wanted, cells);
+  const SceneRule errors[] = {
+    {error < PETSC_MAX_REAL, "up to %.2g of R0", {error}},
+    {1, "more than was measured"}};
+  const SceneRule rows[] = {
+    {error <= wanted * (1 + 1e-9), "enough"},
+    {scene->vesicles.packing > 0 && scene->vesicles.packing_gap == 0, "TOO NEAR for %g, give -vesicle_packing_gap", {wanted}},
+    {finer, "TOO NEAR for %g, take -domain_cells %.0f,%.0f", {wanted, cells[0], cells[1]}},
+    {1, "TOO NEAR for %g, and for any grid up to R0/h = %.0f", {wanted, GridFinest(fluid)}}};
   PetscFunctionBeginUser;
   if (error == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (error < PETSC_MAX_REAL) PetscCall(PetscSNPrintf(leaves, sizeof(leaves), "up to %.2g of R0", (double)error));
-  if (error <= wanted * (1 + 1e-9))
-    ;
-  else if (scene->vesicles.packing > 0 && scene->vesicles.packing_gap == 0)
-    PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, give -vesicle_packing_gap", (double)wanted));
-  else if (SceneWallCells(fluid, scene->fluid.box, h, R0, gap, wanted, cells))
-    PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, take -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT,
-                            (double)wanted, cells[0], cells[1]));
-  else
-    PetscCall(PetscSNPrintf(what, sizeof(what), "TOO NEAR for %g, and for any grid up to R0/h = %d", (double)wanted,
-                            GridFinest(fluid)));
-  PetscCall(
-      PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SCENE_TEXT(scene, errors, leaves));
+  PetscCall(SCENE_TEXT(scene, rows, what));
+  return PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what);
 }
 
 PetscErrorCode SceneReportGrid(Scene scene) {
-  const PetscReal R0 = SceneSmallestRadius(scene), cells = R0 / FluidSpecCellSize(&scene->fluid);
-  const PetscReal wanted = scene->scheme.wanted;
+  const PetscReal R0 = SceneSmallestRadius(scene), cells = R0 / FluidSpecCellSize(&scene->fluid), wanted = scene->scheme.wanted;
+  const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
+  char what[PETVES_MAX_MESSAGE], leaves[PETVES_MAX_MESSAGE];
   PetscBool many = PETSC_TRUE;
+  PetscInt finer[2];
   for (PetscInt v = 0; v < scene->shape.vesicles; v++)
     if (scene->shape.start[v + 1] - scene->shape.start[v] < MARKERS) many = PETSC_FALSE;
-  const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
   const PetscReal error = GridError(fluid, cells, many), enough = SceneCellsFor(fluid, wanted, many);
-  char leaves[64] = "coarser than any that was measured", what[256] = "enough";
-  PetscInt finer[2];
+  const PetscBool some = SceneSquareCells(scene->fluid.box, R0 / enough, finer) && GridError(fluid, enough, many) <= wanted;
+  const char *const or_markers = !many && GridError(fluid, cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : "";
+  const SceneRule errors[] = {
+    {error == PETSC_MAX_REAL, "coarser than any that was measured"},
+    {1, "which leaves up to %.2g%s", {error}, {fluid == AUTO_INERTIA ? " with inertia" : ""}}};
+  const SceneRule rows[] = {
+    {error <= wanted * (1 + 1e-9), "enough"},
+    {some, "TOO COARSE for %g, take R0/h = %g, -domain_cells %.0f,%.0f%s", {wanted, enough, finer[0], finer[1]}, {or_markers}},
+    {1, "no grid up to R0/h = %g reached %g", {enough, wanted}}};
   PetscFunctionBeginUser;
-  if (FluidSpecIsFree(&scene->fluid)) {
-    PetscCall(PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n"));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (error < PETSC_MAX_REAL)
-    PetscCall(PetscSNPrintf(leaves, sizeof(leaves), "which leaves up to %.2g%s", (double)error,
-                            fluid == AUTO_INERTIA ? " with inertia" : ""));
-  if (error <= wanted * (1 + 1e-9))
-    ;
-  else if (GridError(fluid, enough, many) > wanted || !SceneSquareCells(scene->fluid.box, R0 / enough, finer))
-    PetscCall(PetscSNPrintf(what, sizeof(what), "no grid up to R0/h = %g reached %g", (double)enough, (double)wanted));
-  else
-    PetscCall(PetscSNPrintf(
-        what, sizeof(what), "TOO COARSE for %g, take R0/h = %g, -domain_cells %" PetscInt_FMT ",%" PetscInt_FMT "%s",
-        (double)wanted, (double)enough, finer[0], finer[1],
-        !many && GridError(fluid, cells, PETSC_TRUE) <= wanted ? ", or this grid and -vesicle_markers 45" : ""));
+  if (FluidSpecIsFree(&scene->fluid)) return PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n");
+  PetscCall(SCENE_TEXT(scene, errors, leaves));
+  PetscCall(SCENE_TEXT(scene, rows, what));
   PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g, %s: %s\n", (double)cells, leaves, what));
-  PetscCall(AutoReportWall(scene, fluid));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return AutoReportWall(scene, fluid);
 }
+/* clang-format on */

@@ -17,34 +17,52 @@ static PetscErrorCode RuleValue(Scene scene, const char name[], size_t length, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]) {
-  char text[PETVES_MAX_MESSAGE] = "", part[PETVES_MAX_MESSAGE];
+PetscErrorCode SceneText(Scene scene, size_t rules, const SceneRule rule[], char text[PETVES_MAX_MESSAGE]) {
+  char part[PETVES_MAX_MESSAGE];
   size_t used = 0;
   PetscFunctionBeginUser;
-  while (rules && !rule->broken) rule++, rules--;
+  *text = 0;
+  while (rules && !rule->holds) rule++, rules--;
   if (!rules) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscReal *number = rule->number;
-  for (const char *p = rule->message; *p && used < sizeof(text) - 1; used += strlen(text + used)) {
+  const char *const *word = rule->word;
+  for (const char *p = rule->message; *p && used < PETVES_MAX_MESSAGE - 1; used += strlen(text + used)) {
     const PetscBool special = *p == '{' || *p == '%';
-    const size_t n = strcspn(p, *p == '{' ? "}" : *p == '%' ? "gfc" : "{%"), left = sizeof(text) - used;
+    const size_t n = strcspn(p, *p == '{' ? "}" : *p == '%' ? "gfcs" : "{%"), left = PETVES_MAX_MESSAGE - used;
     (void)snprintf(part, sizeof(part), "%.*s", (int)(n + (*p == '%')), p);
     if (*p == '{')
       PetscCall(RuleValue(scene, part + 1, left, text + used));
     else if (*p != '%')
       (void)snprintf(text + used, left, "%s", part);
+    else if (part[n] == 's')
+      (void)snprintf(text + used, left, part, *word++);
     else if (part[n] == 'c')
       (void)snprintf(text + used, left, part, (int)*number++);
     else
       PetscCall(PetscSNPrintf(text + used, left, part, (double)*number++)); /* PETSc writes 2 as 2. */
     p += n + special;
   }
-  PetvesCheck(PETSC_FALSE, scene->comm, "%s", text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt count,
-                              const char what[], const char one[]) {
+PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]) {
+  char text[PETVES_MAX_MESSAGE];
+  PetscFunctionBeginUser;
+  PetscCall(SceneText(scene, rules, rule, text));
+  PetvesCheck(!*text, scene->comm, "%s", text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many numbers a list of the options has. */
+static PetscInt SceneListLength(Scene scene, const char name[]) {
+  const OptionRow *row = &scene->options.row[OptionFind(&scene->options, name)];
+  return *(const PetscInt *)((const char *)scene + row->offset); /* RealList and IntList begin with it */
+}
+
+PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt each, PetscInt count, const char what[],
+                              const char one[]) {
   const char *const number = each == 1 ? "one" : each == 2 ? "two" : "three";
+  const PetscInt n = SceneListLength(scene, name);
   PetscFunctionBeginUser;
   PetvesCheck(n == each || n == each * count, scene->comm,
               "%s: %" PetscInt_FMT " number%s given for %" PetscInt_FMT " %.*s; allowed: %s for all or %s %s", name, n,
@@ -81,64 +99,22 @@ PetscErrorCode SceneCheckCells(Scene s) {
      "-domain_cells {-domain_cells}: cells of %g x %g; allowed: square cells, in this -domain_box such as %.0f,%.0f", {hx, hy, fit, fit * ratio}}};
   return REFUSE(s, rules);
 }
-/* clang-format on */
-
-/* A list has `each` numbers a vesicle, or (shared) `each` for all of them. */
-static PetscErrorCode SceneCheckVesicleList(Scene scene, const char name[], PetscInt n, PetscInt each,
-                                            PetscBool shared) {
-  PetscFunctionBeginUser;
-  PetscCheck(n == each * (PetscInt64)scene->vesicles.count || (shared && n == each), scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " number%s given; allowed: %" PetscInt_FMT
-             " for each of -vesicle_count %" PetscInt_FMT " vesicles%s",
-             name, n, n == 1 ? "" : "s", each, scene->vesicles.count, shared ? ", or once for all" : "");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A list that says what vesicles are has `each` numbers for all of them, a vesicle, or with a mixture a kind; packed
    vesicles have no numbers by which a list could name them. */
-static PetscErrorCode SceneCheckKinds(Scene scene, const char name[], PetscInt n, PetscInt each) {
-  const PetscInt kinds = scene->vesicles.mixture.n;
-  PetscFunctionBeginUser;
-  if (scene->vesicles.shape == SHAPE_FILE) PetscFunctionReturn(PETSC_SUCCESS); /* their number is known later */
-  PetscCheck(n == each || n == each * kinds || kinds == 1, scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " number%s given; allowed: %" PetscInt_FMT " for each of %" PetscInt_FMT
-             " kinds (-vesicle_mixture), or once for all",
-             name, n, n == 1 ? "" : "s", each, kinds);
-  PetscCheck(n == each || kinds > 1 || scene->vesicles.packing == 0, scene->comm, PETSC_ERR_USER_INPUT,
-             "%s: %" PetscInt_FMT " numbers given with -vesicle_packing; allowed: %" PetscInt_FMT
-             " for all, or an entry for each kind of -vesicle_mixture",
-             name, n, each);
-  if (kinds == 1) PetscCall(SceneCheckVesicleList(scene, name, n, each, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscErrorCode SceneCheckKinds(Scene s, const char name[], PetscInt each) {
+  const PetscInt n = SceneListLength(s, name), kinds = s->vesicles.mixture.n;
+  const PetscBool one = kinds == 1 && n != each;
+  const char *const plural = n == 1 ? "" : "s";
+  const SceneRule rules[] = {
+    {kinds > 1 && n != each && n != each * kinds,
+     "%s: %.0f number%s given; allowed: %.0f for each of %.0f kinds (-vesicle_mixture), or once for all", {n, each, kinds}, {name, plural}},
+    {one && s->vesicles.packing > 0,
+     "%s: %.0f numbers given with -vesicle_packing; allowed: %.0f for all, or an entry for each kind of -vesicle_mixture", {n, each}, {name}},
+    {one && n != (PetscReal)each * s->vesicles.count,
+     "%s: %.0f number%s given; allowed: %.0f for each of -vesicle_count {-vesicle_count} vesicles, or once for all", {n, each}, {name, plural}}};
+  return REFUSE(s, rules);
 }
 
-/* Check the lists of vesicles: a list has one entry for all vesicles, one a vesicle, or one a kind. */
-static PetscErrorCode SceneCheckVesicleLists(Scene scene) {
-  const SceneVesicles *own = &scene->vesicles;
-  PetscReal sum = 0;
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < own->mixture.n; k++) sum += own->mixture.v[k];
-  PetvesCheck(PetscAbsReal(sum - 1) < 1e-6, scene->comm,
-              "-vesicle_mixture: its parts add up to %g; allowed: parts that add up to 1", (double)sum);
-  PetscCall(SceneCheckKinds(scene, "-vesicle_semi_axes", own->axes.n, 2));
-  PetscCall(SceneCheckKinds(scene, "-vesicle_area", own->area.n, 1));
-  PetscCall(SceneCheckKinds(scene, "-vesicle_reduced_area", own->reduced_area.n, 1));
-  PetscCall(SceneCheckKinds(scene, "-vesicle_bending", scene->membrane.stiffness.n, 1));
-  PetscCall(SceneCheckKinds(scene, "-membrane_law", scene->membrane.law.n, 1));
-  PetscCall(SceneCheckKinds(scene, "-membrane_stretching", scene->membrane.stretching.n, 1));
-  PetscCall(SceneCheckKinds(scene, "-membrane_viscosity", scene->membrane.viscosity.n, 1));
-  PetscCall(SceneCheckKinds(scene, "-membrane_memory", scene->membrane.memory.n, 1));
-  for (PetscInt k = 0; k < own->reduced_area.n; k++)
-    PetvesCheck(own->shape != SHAPE_BICONCAVE || (own->reduced_area.v[k] >= 0.35 && own->reduced_area.v[k] <= 0.9),
-                scene->comm, "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9",
-                (double)own->reduced_area.v[k]);
-  if (own->shape == SHAPE_FILE || own->packing > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SceneCheckVesicleList(scene, "-vesicle_center", own->center.n, 2, PETSC_FALSE));
-  PetscCall(SceneCheckVesicleList(scene, "-vesicle_angle", own->angle.n, 1, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* clang-format off */
 /* split and penalty are their papers' methods: one order, kernel ib6 and differences, none of the corrections of the
    coupled scheme, whose near field needs no projection step. */
 static PetscErrorCode SceneCheckScheme(Scene s) {
@@ -180,19 +156,13 @@ static PetscErrorCode SceneCheckScheme(Scene s) {
   return REFUSE(s, rules);
 }
 
-static PetscReal SceneLargest(const RealList *list) {
-  PetscReal largest = 0;
-  for (PetscInt k = 0; k < list->n; k++) largest = PetscMax(largest, list->v[k]);
-  return largest;
-}
-
 /* Membranes that stretch, remember, resist, let water through or draw one another: what each of them needs. */
 static PetscErrorCode SceneCheckMembranes(Scene s) {
   const SceneMembrane *m = &s->membrane;
   const ScenePotential *p = &s->potential;
   const PetscBool paper = strcmp(s->scheme.type, "coupled");
-  const PetscReal memory = SceneLargest(&m->memory);
-  const PetscBool bends = SceneLargest(&m->stiffness) > 0;
+  const PetscReal memory = ListLargest(&m->memory);
+  const PetscBool bends = ListLargest(&m->stiffness) > 0;
   /* entries of the lists of laws and moduli; lists of unlike lengths are refused elsewhere */
   const PetscInt laws = m->law.n, moduli = m->stretching.n;
   const PetscInt entries = PetscMin(laws, moduli) > 1 ? PetscMin(laws, moduli) : PetscMax(laws, moduli);
@@ -219,7 +189,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
      "-membrane_moment {-membrane_moment}: -vesicle_bending 0 leaves bending out; allowed: quadratic, or -vesicle_bending above 0"},
     {memory > 0 && !bends,
      "-membrane_memory {-membrane_memory}: -vesicle_bending 0 bends back to no shape; allowed: 0, or -vesicle_bending above 0"},
-    {!stretches && SceneLargest(&m->viscosity) > 0,
+    {!stretches && ListLargest(&m->viscosity) > 0,
      "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
     {m->osmotic.n != 2,
      "-membrane_osmotic {-membrane_osmotic}: not two numbers; allowed: inside, outside"},
@@ -272,20 +242,34 @@ static PetscErrorCode SceneCheckFlow(Scene s) {
 }
 
 static PetscErrorCode SceneCheckVesicles(Scene s) {
+  static const char *const kinds[] = {"-vesicle_area", "-vesicle_reduced_area", "-vesicle_bending", "-membrane_law", "-membrane_stretching", "-membrane_viscosity", "-membrane_memory"};
   const SceneVesicles *own = &s->vesicles;
+  const PetscInt count = own->count, centers = own->center.n, angles = own->angle.n;
   const PetscBool axes = SceneGiven(s, "-vesicle_semi_axes"), area = SceneGiven(s, "-vesicle_area"),
-                  by_area = area || SceneGiven(s, "-vesicle_reduced_area");
+                  by_area = area || SceneGiven(s, "-vesicle_reduced_area"), file = own->shape == SHAPE_FILE, placed = !file && own->packing == 0;
+  PetscReal parts = 0, outline = 0.5; /* a reduced area that no biconcave outline has, if there is one */
+  for (PetscInt k = 0; k < own->mixture.n; k++) parts += own->mixture.v[k];
+  for (PetscInt k = own->reduced_area.n - 1; k >= 0; k--)
+    if (own->reduced_area.v[k] < 0.35 || own->reduced_area.v[k] > 0.9) outline = own->reduced_area.v[k];
   const SceneRule shapes[] = {
     {by_area && axes,
      "-vesicle_semi_axes: given together with -vesicle_area or -vesicle_reduced_area; allowed: one description of the ellipse"},
     {own->packing > 0 && own->shape == SHAPE_BICONCAVE,
      "-vesicle_packing {-vesicle_packing}: not with -vesicle_shape biconcave; allowed: ellipses, the only shape that is packed"},
     {own->packing > 0 && SceneGiven(s, "-vesicle_count") && (area || axes),
-     "-vesicle_packing {-vesicle_packing}: given together with -vesicle_count {-vesicle_count} and the vesicles' size; allowed: one of the two, the other follows from it"}};
+     "-vesicle_packing {-vesicle_packing}: given together with -vesicle_count {-vesicle_count} and the vesicles' size; allowed: one of the two, the other follows from it"},
+    {PetscAbsReal(parts - 1) >= 1e-6,
+     "-vesicle_mixture: its parts add up to %g; allowed: parts that add up to 1", {parts}}};
   const SceneRule markers[] = {
-    {own->shape == SHAPE_FILE && !*own->file,
+    {own->shape == SHAPE_BICONCAVE && (outline < 0.35 || outline > 0.9),
+     "-vesicle_reduced_area %g: no -vesicle_shape biconcave has it; allowed: 0.35 to 0.9", {outline}},
+    {placed && centers != 2. * count,
+     "-vesicle_center: %.0f number%s given; allowed: 2 for each of -vesicle_count {-vesicle_count} vesicles", {centers}, {centers == 1 ? "" : "s"}},
+    {placed && angles != 1 && angles != count,
+     "-vesicle_angle: %.0f numbers given; allowed: 1 for each of -vesicle_count {-vesicle_count} vesicles, or once for all", {angles}},
+    {file && !*own->file,
      "-vesicle_shape file: no -vesicle_file given; allowed: a text file with x y a line"},
-    {*own->file && own->shape != SHAPE_FILE,
+    {*own->file && !file,
      "-vesicle_file {-vesicle_file}: not read; allowed: with -vesicle_shape file only"},
     {own->shape != SHAPE_NONE && own->markers && own->markers < 8,
      "-vesicle_markers {-vesicle_markers}: too few; allowed: at least 8"},
@@ -297,7 +281,8 @@ static PetscErrorCode SceneCheckVesicles(Scene s) {
      "-output_dir: empty; allowed: a folder's name"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, shapes));
-  PetscCall(SceneCheckVesicleLists(s));
+  if (!file) PetscCall(SceneCheckKinds(s, "-vesicle_semi_axes", 2)); /* how many a file has is known later */
+  for (size_t k = 0; k < sizeof(kinds) / sizeof(kinds[0]) && !file; k++) PetscCall(SceneCheckKinds(s, kinds[k], 1));
   PetscCall(REFUSE(s, markers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -359,11 +344,9 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   FluidSpecPeriods(f, period);
   PetscCall(REFUSE(s, unbounded));
   PetscCall(FlowCheck(s->comm, &s->flow, f->box, period, FluidSpecCellSize(f), s->time.end));
-  PetscCall(SceneCheckList(s, "-vesicle_density_difference", s->gravity.density.n, 1, entries, what, "a vesicle"));
+  PetscCall(SceneCheckList(s, "-vesicle_density_difference", 1, entries, what, "a vesicle"));
   PetscCall(REFUSE(s, forces));
-  if (vesicles)
-    PetscCall(SceneCheckList(s, "-vesicle_viscosity_ratio", s->membrane.viscosity_ratio.n, 1, entries, what,
-                             "a vesicle or kind"));
+  if (vesicles) PetscCall(SceneCheckList(s, "-vesicle_viscosity_ratio", 1, entries, what, "a vesicle or kind"));
   PetscCall(REFUSE(s, viscosities));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,21 +4,25 @@
 #pragma once
 #include "scene/spec.h"
 
-/* A rule. In its message the value in force of an option stands for "{-name}", and the next of the numbers for each
-   conversion of printf, %g, %f or (a character) %c. */
+/* A condition and what is to be said where it holds. In the message the value in force of an option stands for
+   "{-name}", the next of the numbers for each conversion of printf, %g, %f or (a character) %c, and the next of the
+   words for %s. */
 typedef struct {
-  int broken;
+  int holds;
   const char *message;
   PetscReal number[7];
+  const char *word[3];
 } SceneRule;
 
-/* SceneRefuse - stop with the message of the first rule that is broken. SCENE_REFUSE_IF - one rule. SceneCheckList -
-   stop unless a list has `each` numbers (1 to 3) for all of `count` "vesicles" (what), or `each` numbers "a vesicle"
-   (one). Collective. */
+/* SceneText - the message of the first rule that holds; empty where none does. SceneRefuse - stop with this message.
+   SCENE_REFUSE_IF - one rule. SceneCheckList - stop unless a list has `each` numbers (1 to 3) for all of `count`
+   "vesicles" (what), or `each` numbers "a vesicle" (one). Collective. */
+PETSC_EXTERN PetscErrorCode SceneText(Scene scene, size_t rules, const SceneRule rule[], char text[PETVES_MAX_MESSAGE]);
 PETSC_EXTERN PetscErrorCode SceneRefuse(Scene scene, size_t rules, const SceneRule rule[]);
-PETSC_EXTERN PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt n, PetscInt each, PetscInt count,
+PETSC_EXTERN PetscErrorCode SceneCheckList(Scene scene, const char name[], PetscInt each, PetscInt count,
                                            const char what[], const char one[]);
 #define REFUSE(scene, rules) SceneRefuse(scene, sizeof(rules) / sizeof((rules)[0]), rules)
+#define SCENE_TEXT(scene, rules, text) SceneText(scene, sizeof(rules) / sizeof((rules)[0]), rules, text)
 #define SCENE_REFUSE_IF(scene, ...) SceneRefuse(scene, 1, &(const SceneRule){__VA_ARGS__})
 
 #define SCENE_MOST_FREE 30 /* vesicles in unbounded fluid: all pairs are summed, beyond it a large box is faster */

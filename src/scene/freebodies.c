@@ -63,9 +63,9 @@ PetscErrorCode SceneChooseFreeBodies(Draft scene) {
   PetscFunctionBeginUser;
   PetscCall(FreeBodiesRead(scene));
   if (!own->count) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SceneCheckList(scene, "-obstacle_density", own->density.n, 1, curves, "obstacles", "each"));
-  PetscCall(SceneCheckList(scene, "-obstacle_force", own->force.n, 2, curves, "obstacles", "each"));
-  PetscCall(SceneCheckList(scene, "-obstacle_torque", own->torque.n, 1, curves, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_density", 1, curves, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_force", 2, curves, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_torque", 1, curves, "obstacles", "each"));
   PetscCall(FreeBodiesCheckScene(scene));
   for (PetscInt b = 0; b < curves; b++)
     if (own->is[b]) PetscCall(FreeBodyCheck(scene, b));

@@ -132,9 +132,9 @@ static PetscErrorCode ObstaclesMakeCircles(Scene scene, PetscInt count, Outlines
   PetscFunctionBeginUser;
   o->count = count;
   PetscCall(PetscCalloc1(count, &o->of));
-  PetscCall(SceneCheckList(scene, "-obstacle_radius", own->radius.n, 1, count, "obstacles", "each"));
-  PetscCall(SceneCheckList(scene, "-obstacle_velocity", own->move.n, 2, count, "obstacles", "each"));
-  PetscCall(SceneCheckList(scene, "-obstacle_rotation", own->rotation.n, 1, count, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_radius", 1, count, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_velocity", 2, count, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_rotation", 1, count, "obstacles", "each"));
   for (PetscInt k = 0; k < count; k++) {
     Outline *one = &o->of[k];
     if (lattice) ObstaclePlaceInLattice(scene, k, one->center);
@@ -178,7 +178,7 @@ static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {
      "-obstacle_shape couette: -obstacle_radius {-obstacle_radius}; allowed: the inner radius first, smaller than the outer one"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(scene, rules));
-  PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 2, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_center", 2, 2, "obstacles", "each"));
   PetscCall(ObstaclesMakeCircles(scene, 2, o));
   o->of[1].note.clockwise = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -195,7 +195,7 @@ static PetscErrorCode ObstaclesMakeConstriction(Scene scene, Outlines *o) {
      "-obstacle_length {-obstacle_length}: the box is %g long; allowed: less than that", {f->box[1] - f->box[0]}}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(scene, rules));
-  PetscCall(SceneCheckList(scene, "-obstacle_center", own->center.n, 2, 1, "obstacles", "each"));
+  PetscCall(SceneCheckList(scene, "-obstacle_center", 2, 1, "obstacles", "each"));
   o->count = 2;
   PetscCall(PetscCalloc1(2, &o->of));
   for (int side = 0; side < 2; side++) PetscCall(ArcBump(scene, side, &o->of[side].curve));
@@ -238,10 +238,10 @@ static PetscErrorCode ObstaclesCreateShape(Scene scene, const Outlines *o, Shape
     const PetscBool open = one->curve.kind.type == CURVE_OPEN;
     const PetscReal length = open ? CurvePartLength(&one->curve, one->part[0], one->part[1]) : CurveLength(&one->curve);
     const PetscReal wanted = length / spacing;
-    PetscCheck(all + wanted <= MOST_MARKERS, scene->comm, PETSC_ERR_USER_INPUT,
-               "-obstacle_spacing %g: more than %d markers on the obstacles; allowed: at most that many, so a larger "
-               "spacing, fewer obstacles or coarser -domain_cells",
-               (double)scene->obstacles.spacing, MOST_MARKERS);
+    PetvesCheck(all + wanted <= MOST_MARKERS, scene->comm,
+                "-obstacle_spacing %g: more than %d markers on the obstacles; allowed: at most that many, so a larger "
+                "spacing, fewer obstacles or coarser -domain_cells",
+                (double)scene->obstacles.spacing, MOST_MARKERS);
     const PetscInt n = open ? 1 + (PetscInt)PetscCeilReal(wanted) : 2 * (PetscInt)PetscFloorReal(wanted / 2) + 1;
     markers[k] = PetscMax(LEAST_MARKERS, n);
     all += markers[k];
@@ -265,10 +265,10 @@ static PetscErrorCode ObstaclesChooseFactor(Scene scene, const Outlines *o, Scen
   own->modes = own->factor == OBSTACLE_FACTOR_AUTO ? many : own->factor == OBSTACLE_FACTOR_MODES;
   for (PetscInt k = 0; k < o->count; k++) most = PetscMax(most, own->outline.start[k + 1] - own->outline.start[k]);
   if (!own->modes) most = markers;
-  PetscCheck(most <= MOST_DENSE, scene->comm, PETSC_ERR_USER_INPUT,
-             "-obstacle_spacing %g: %" PetscInt_FMT " markers on %s; allowed: at most %d, so a larger spacing%s",
-             (double)own->spacing, most, own->modes ? "one obstacle" : "the obstacles", MOST_DENSE,
-             own->modes ? " or coarser -domain_cells" : ", coarser -domain_cells, or -obstacle_factor modes");
+  PetvesCheck(most <= MOST_DENSE, scene->comm,
+              "-obstacle_spacing %g: %" PetscInt_FMT " markers on %s; allowed: at most %d, so a larger spacing%s",
+              (double)own->spacing, most, own->modes ? "one obstacle" : "the obstacles", MOST_DENSE,
+              own->modes ? " or coarser -domain_cells" : ", coarser -domain_cells, or -obstacle_factor modes");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -65,7 +65,7 @@ static PetscErrorCode PackedCheckPosts(Scene s) {
      "-obstacle_count {-obstacle_count}: not with -vesicle_packing_type lattice; allowed: random"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, rules));
-  PetscCall(SceneCheckList(s, "-obstacle_radius", s->obstacles.radius.n, 1, s->obstacles.posts.count, "obstacles", "each"));
+  PetscCall(SceneCheckList(s, "-obstacle_radius", 1, s->obstacles.posts.count, "obstacles", "each"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

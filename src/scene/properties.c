@@ -4,6 +4,12 @@ PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscIn
   return list->v[list->n > each ? each * entry + component : component];
 }
 
+PetscReal ListLargest(const RealList *list) {
+  PetscReal largest = 0;
+  for (PetscInt k = 0; k < list->n; k++) largest = PetscMax(largest, list->v[k]);
+  return largest;
+}
+
 PetscInt SceneKindOf(Scene scene, PetscInt v) {
   return scene->vesicles.kind ? scene->vesicles.kind[v] : v;
 }

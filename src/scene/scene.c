@@ -16,8 +16,9 @@ static void SceneChooseStiffness(Draft s) {
 /* The function of a caller's flow, or of formulas. */
 static PetscErrorCode SceneSetFlow(Draft s, PetvesFlow flow, void *ctx) {
   PetscFunctionBeginUser;
-  PetscCheck(flow || s->flow.type != FLOW_CUSTOM, s->comm, PETSC_ERR_USER_INPUT,
-             "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
+  PetvesCheck(
+      flow || s->flow.type != FLOW_CUSTOM, s->comm,
+      "-flow_type custom: no function given; allowed: from Python (flow=) or C (SimulationCreateWithFlow) only");
   s->flow.function = flow;
   s->flow.ctx = ctx;
   if (s->flow.type == FLOW_FORMULA) PetscCall(FlowReadFormulas(s->comm, s->dim != DIM_PLANE ? 3 : 2, &s->flow));

@@ -30,22 +30,15 @@ const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
 }
 
 static PetscErrorCode SceneCheckSpaceLists(Scene s) {
-  const SceneSpace *own = &s->space;
-  const PetscInt count = s->vesicles.count;
-  const struct {
+  static const struct {
     const char *name;
-    PetscInt n, each;
-  } lists[] = {{"-vesicle_radius", own->radius.n, 1},
-               {"-vesicle_reduced_volume", own->reduced_volume.n, 1},
-               {"-vesicle_center", s->vesicles.center.n, 3},
-               {"-vesicle_half_axes", own->half_axes.n, 3},
-               {"-vesicle_axis", own->axis.n, 3},
-               {"-vesicle_density_difference", s->gravity.density.n, 1},
-               {"-vesicle_bending", s->membrane.stiffness.n, 1},
-               {"-vesicle_viscosity_ratio", s->membrane.viscosity_ratio.n, 1}};
+    PetscInt each;
+  } lists[] = {{"-vesicle_radius", 1},    {"-vesicle_reduced_volume", 1}, {"-vesicle_center", 3},
+               {"-vesicle_half_axes", 3}, {"-vesicle_axis", 3},           {"-vesicle_density_difference", 1},
+               {"-vesicle_bending", 1},   {"-vesicle_viscosity_ratio", 1}};
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
-    PetscCall(SceneCheckList(s, lists[k].name, lists[k].n, lists[k].each, count, "vesicles", "a vesicle"));
+    PetscCall(SceneCheckList(s, lists[k].name, lists[k].each, s->vesicles.count, "vesicles", "a vesicle"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,8 +63,47 @@ static PetscBool SceneAlongAxis(const RealList *list, PetscBool alike) {
   return PETSC_TRUE;
 }
 
-/* What a scene of bodies of revolution about x cannot have; the flow in a tube. */
 /* clang-format off */
+static PetscErrorCode SceneCheckSpace(Scene s) {
+  const RealList *axis = &s->space.axis, *bending = &s->membrane.stiffness;
+  const PetscBool half_axes = SceneGiven(s, "-vesicle_half_axes"), volume = SceneGiven(s, "-vesicle_reduced_volume"),
+                  file = (PetscBool)(*s->vesicles.file != 0);
+  PetscBool directionless = PETSC_FALSE;
+  PetscReal softest = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < bending->n; k++) softest = PetscMin(softest, bending->v[k]);
+  for (PetscInt k = 0; k < axis->n; k += 3)
+    if (axis->v[k] == 0 && axis->v[k + 1] == 0 && axis->v[k + 2] == 0) directionless = PETSC_TRUE;
+  const SceneRule rules[] = {
+    {s->flow.type == FLOW_FORMULA && !SceneGiven(s, "-flow_u") && !SceneGiven(s, "-flow_v") && !SceneGiven(s, "-flow_w"),
+     "-flow_type formula: no formula given; allowed: with -flow_u, -flow_v or -flow_w"},
+    {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3,
+     "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
+    {strcmp(s->scheme.type, "coupled") != 0,
+     "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
+    {half_axes && (volume || SceneGiven(s, "-vesicle_radius")),
+     "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both descriptions"},
+    {file && (half_axes || volume || SceneGiven(s, "-vesicle_axis") || SceneGiven(s, "-vesicle_spheroid")),
+     "-vesicle_file {-vesicle_file}: with -vesicle_half_axes, -vesicle_reduced_volume, -vesicle_axis or -vesicle_spheroid; allowed: -vesicle_radius and -vesicle_center"},
+    {s->gravity.g.n != 3,
+     "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
+    {s->time.adapt == ADAPT_ERROR && s->scheme.order < 2,
+     "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with -scheme_order 2 or 3"},
+    {s->space.degree % 2,
+     "-sphere_degree {-sphere_degree}: odd; allowed: an even number"},
+    {s->space.degree > 32 && (s->dim != DIM_AXIAL || s->vesicles.count > 1 || file),
+     "-sphere_degree {-sphere_degree}: more than whole surfaces have room for; allowed up to 32, or with -dim axisymmetric and one vesicle without -vesicle_file"},
+    {half_axes && s->space.spheroid == SPHEROID_CAPSULE,
+     "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_spheroid capsule; allowed: one of both descriptions"},
+    {softest == 0,
+     "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"},
+    {s->space.spheroid == SPHEROID_CAPSULE && ListLargest(&s->space.reduced_volume) > CAPSULE_MOST,
+     "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; allowed: up to 0.97"},
+    {directionless,
+     "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"}};
+  return REFUSE(s, rules);
+}
+
+/* What a scene of bodies of revolution about x cannot have; the flow in a tube. */
 static PetscErrorCode SceneResolveAxial(Draft s) {
   SceneTube *tube = &s->space.tube;
   const PetscBool in_tube = (PetscBool)(tube->radius > 0), driven = (PetscBool)(tube->period > 0);
@@ -118,59 +150,13 @@ static PetscErrorCode SceneResolveAxial(Draft s) {
 }
 /* clang-format on */
 
-/* Numbers of single vesicles that options cannot have. */
-static PetscErrorCode SceneCheckEach(Draft s) {
-  PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < s->space.reduced_volume.n && s->space.spheroid == SPHEROID_CAPSULE; v++)
-    PetscCall(
-        SCENE_REFUSE_IF(s, s->space.reduced_volume.v[v] > CAPSULE_MOST,
-                        "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; "
-                        "allowed: up to 0.97"));
-  for (PetscInt v = 0; v < s->space.axis.n / 3; v++) {
-    const PetscReal *axis = s->space.axis.v + 3 * v;
-    PetscCall(SCENE_REFUSE_IF(s, axis[0] == 0 && axis[1] == 0 && axis[2] == 0,
-                              "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SceneResolveSpace(Draft s) {
-  PetscReal R0[2], bending, relaxation, softest = PETSC_MAX_REAL;
+  PetscReal R0[2], bending, relaxation;
   SurfaceRows rows = {0};
   PetscFunctionBeginUser;
   PetscCall(SceneReadSurfaces(s, &rows));
   PetscCall(SceneCheckSpaceLists(s));
-  const PetscInt count = s->vesicles.count;
-  for (PetscInt k = 0; k < s->membrane.stiffness.n; k++) softest = PetscMin(softest, s->membrane.stiffness.v[k]);
-  const SceneRule rules[] = {
-      {s->flow.type == FLOW_FORMULA && !SceneGiven(s, "-flow_u") && !SceneGiven(s, "-flow_v") &&
-           !SceneGiven(s, "-flow_w"),
-       "-flow_type formula: no formula given; allowed: with -flow_u, -flow_v or -flow_w"},
-      {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3,
-       "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
-      {strcmp(s->scheme.type, "coupled") != 0,
-       "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
-      {SceneGiven(s, "-vesicle_half_axes") &&
-           (SceneGiven(s, "-vesicle_radius") || SceneGiven(s, "-vesicle_reduced_volume")),
-       "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both "
-       "descriptions"},
-      {*s->vesicles.file && (SceneGiven(s, "-vesicle_half_axes") || SceneGiven(s, "-vesicle_reduced_volume") ||
-                             SceneGiven(s, "-vesicle_axis") || SceneGiven(s, "-vesicle_spheroid")),
-       "-vesicle_file {-vesicle_file}: with -vesicle_half_axes, -vesicle_reduced_volume, -vesicle_axis or "
-       "-vesicle_spheroid; allowed: -vesicle_radius and -vesicle_center"},
-      {s->gravity.g.n != 3, "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
-      {s->time.adapt == ADAPT_ERROR && s->scheme.order < 2,
-       "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with "
-       "-scheme_order 2 or 3"},
-      {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number"},
-      {s->space.degree > 32 && (s->dim != DIM_AXIAL || count > 1 || *s->vesicles.file),
-       "-sphere_degree {-sphere_degree}: more than whole surfaces have room for; allowed up to 32, or with "
-       "-dim axisymmetric and one vesicle without -vesicle_file"},
-      {SceneGiven(s, "-vesicle_half_axes") && s->space.spheroid == SPHEROID_CAPSULE,
-       "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_spheroid capsule; allowed: one of both descriptions"},
-      {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"}};
-  PetscCall(REFUSE(s, rules));
-  PetscCall(SceneCheckEach(s));
+  PetscCall(SceneCheckSpace(s));
   PetscCall(SceneResolveAxial(s));
   PetscCall(SceneChooseByError(s, AUTO_SPACE));
   PetscCall(OptionsDepend(&s->options, s));
@@ -180,29 +166,7 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   if (s->flow.ca != 0) s->flow.peak = s->flow.ca * bending / (s->fluid.nu * R0[0] * R0[0]);
   if (s->repulsion.stress > 0 && s->repulsion.range == 0) s->repulsion.range = R0[1] / 10;
   PetscReal rate = FlowShearRate(&s->flow);
-  PetscCall(Flow3Check(s->comm, &s->flow, count, &s->vesicles.center, R0[0], s->time.end, &rate));
+  PetscCall(Flow3Check(s->comm, &s->flow, s->vesicles.count, &s->vesicles.center, R0[0], s->time.end, &rate));
   if (s->space.label_rate == 0) s->space.label_rate = 10 * PetscMax(rate, relaxation);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SceneViewSpace(Scene s, PetscViewer v) {
-  const PetscBool axial = (PetscBool)(s->dim == DIM_AXIAL);
-  const PetscInt p = s->space.degree, n = axial ? 3 * p + 2 : 4 * PetscSqr(p + 1);
-  char bounds[64] = "without bounds";
-  PetscFunctionBeginUser;
-  if (s->space.tube.radius > 0)
-    PetscCall(PetscSNPrintf(bounds, sizeof(bounds), "in a tube of radius %g%s", (double)s->space.tube.radius,
-                            s->space.tube.throat > 0 ? " with a throat" : ""));
-  PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
-  PetscCall(PetscViewerASCIIPushTab(v));
-  PetscCall(PetscViewerASCIIPrintf(v, "fluid: quasi-steady flow %s in three dimensions%s, nu = %g\n", bounds,
-                                   axial ? ", axisymmetric about x" : "", (double)s->fluid.nu));
-  PetscCall(PetscViewerASCIIPrintf(
-      v, "vesicles: %" PetscInt_FMT " of %" PetscInt_FMT " unknowns, spherical harmonics of degree %" PetscInt_FMT "\n",
-      s->vesicles.count, n, p));
-  PetscCall(PetscViewerASCIIPrintf(v, "scheme: order %" PetscInt_FMT ", dt = %g to t = %g, labels at the rate %g\n",
-                                   s->scheme.order, (double)s->time.dt, (double)s->time.end,
-                                   (double)s->space.label_rate));
-  PetscCall(PetscViewerASCIIPopTab(v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,6 +14,3 @@ PETSC_EXTERN PetscErrorCode SceneResolveSpace(Draft scene);
    file. */
 PETSC_EXTERN PetscErrorCode SceneReadSurfaces(Draft scene, SurfaceRows *rows);
 PETSC_EXTERN PetscErrorCode SceneMakeSurfaces(Draft scene, SurfaceRows *rows);
-
-/* SceneViewSpace - the model in force. Collective. */
-PETSC_EXTERN PetscErrorCode SceneViewSpace(Scene scene, PetscViewer viewer);

@@ -56,6 +56,7 @@ static PetscErrorCode SurfaceOfOptions(Scene s, PetscInt v, PetscReal X[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 /* Coefficients from the lines x[n][5] "l m c_x c_y c_z". */
 static PetscErrorCode SurfaceOfCoefficients(Scene s, PetscInt v, PetscInt n, const PetscReal x[], PetscReal X[]) {
   const PetscInt p = s->space.degree, count = HarmonicsCount(p);
@@ -64,9 +65,7 @@ static PetscErrorCode SurfaceOfCoefficients(Scene s, PetscInt v, PetscInt n, con
   for (const PetscReal *line = x; line < x + 5 * n; line += 5) {
     const PetscReal l = line[0], m = line[1];
     PetscCall(SCENE_REFUSE_IF(s, l != PetscFloorReal(l) || m != PetscFloorReal(m) || PetscAbsReal(m) > l || l > p,
-                              "-vesicle_file {-vesicle_file}: surface %.0f has a coefficient of l = %g, m = %g; "
-                              "allowed: whole numbers |m| <= l <= %g, the -sphere_degree",
-                              {v + 1, l, m, p}));
+      "-vesicle_file {-vesicle_file}: surface %.0f has a coefficient of l = %g, m = %g; allowed: whole numbers |m| <= l <= %g, the -sphere_degree", {v + 1, l, m, p}));
     for (int d = 0; d < 3; d++) X[d * count + (PetscInt)(l * l + l + m)] = line[2 + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,15 +77,10 @@ static PetscErrorCode SurfaceOfPoints(Scene s, PetscInt v, Sphere sphere, PetscI
   PetscReal spread;
   PetscFunctionBeginUser;
   PetscCall(SCENE_REFUSE_IF(s, n < sphere->count,
-                            "-vesicle_file {-vesicle_file}: surface %.0f has %.0f points; allowed: %.0f or more, one a "
-                            "harmonic of -sphere_degree {-sphere_degree}",
-                            {v + 1, n, sphere->count}));
+    "-vesicle_file {-vesicle_file}: surface %.0f has %.0f points; allowed: %.0f or more, one a harmonic of -sphere_degree {-sphere_degree}", {v + 1, n, sphere->count}));
   PetscCall(ShapeFit(sphere, n, x, X, &spread, off));
-  PetscCall(
-      SCENE_REFUSE_IF(s, spread < SPREAD,
-                      "-vesicle_file {-vesicle_file}: the points of surface %.0f leave parts of it open; allowed: "
-                      "points on all sides, or a lower -sphere_degree than {-sphere_degree}",
-                      {v + 1}));
+  PetscCall(SCENE_REFUSE_IF(s, spread < SPREAD,
+    "-vesicle_file {-vesicle_file}: the points of surface %.0f leave parts of it open; allowed: points on all sides, or a lower -sphere_degree than {-sphere_degree}", {v + 1}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,12 +98,8 @@ static PetscErrorCode SurfaceCheckRevolved(Scene s, PetscInt v, PetscReal R0, co
   const PetscBool outward = (PetscBool)(c[s->space.degree + 1] > 0); /* the distance from the axis is positive */
   PetscCall(PetscFree2(c, again));
   PetscCall(SphereDestroy(&revolved));
-  PetscCall(
-      SCENE_REFUSE_IF(s, !(off <= REVOLVED * R0) || !outward,
-                      "-vesicle_file {-vesicle_file}: surface %.0f is no body of revolution about x; allowed with "
-                      "-dim axisymmetric: coefficients c_x of m = 0 and equal ones c_y of m = 1, c_z of m = -1, those "
-                      "of l = 1 positive",
-                      {v + 1}));
+  PetscCall(SCENE_REFUSE_IF(s, !(off <= REVOLVED * R0) || !outward,
+    "-vesicle_file {-vesicle_file}: surface %.0f is no body of revolution about x; allowed with -dim axisymmetric: coefficients c_x of m = 0 and equal ones c_y of m = 1, c_z of m = -1, those of l = 1 positive", {v + 1}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,14 +120,9 @@ static PetscErrorCode SurfaceOfFile(Scene s, const SurfaceRows *rows, PetscInt v
   PetscCall(ShapeMeasure(at, &m));
   const PetscReal own = PetscCbrtReal(3 * at->volume / (4 * PETSC_PI));
   PetscCall(SCENE_REFUSE_IF(s, off > OFF * own,
-                            "-vesicle_file {-vesicle_file}: the points of surface %.0f are %.2g R0 from what degree "
-                            "{-sphere_degree} fits; allowed: %g, with a higher -sphere_degree or points of a surface "
-                            "that each ray from its centroid crosses once",
-                            {v + 1, off / own, OFF}));
+    "-vesicle_file {-vesicle_file}: the points of surface %.0f are %.2g R0 from what degree {-sphere_degree} fits; allowed: %g, with a higher -sphere_degree or points of a surface that each ray from its centroid crosses once", {v + 1, off / own, OFF}));
   PetscCall(SCENE_REFUSE_IF(s, !ShapeIsStar(at, m.center),
-                            "-vesicle_file {-vesicle_file}: surface %.0f folds or crosses itself; allowed: a surface "
-                            "that each ray from its centroid crosses once, at a -sphere_degree that resolves it",
-                            {v + 1}));
+    "-vesicle_file {-vesicle_file}: surface %.0f folds or crosses itself; allowed: a surface that each ray from its centroid crosses once, at a -sphere_degree that resolves it", {v + 1}));
   if (s->dim == DIM_AXIAL) PetscCall(SurfaceCheckRevolved(s, v, own, X));
   *R0 = SceneGiven(s, "-vesicle_radius") ? ListEntry(&s->space.radius, 1, v, 0) : own;
   for (PetscInt k = 0; k < 3 * count; k++) X[k] *= *R0 / own;
@@ -151,13 +136,12 @@ PetscErrorCode SceneReadSurfaces(Draft s, SurfaceRows *rows) {
   if (!*s->vesicles.file) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfacesFromFile(s->comm, "-vesicle_file", s->vesicles.file, rows));
   PetscCall(SCENE_REFUSE_IF(s, SceneGiven(s, "-vesicle_count") && s->vesicles.count != rows->surfaces,
-                            "-vesicle_count {-vesicle_count}: -vesicle_file {-vesicle_file} has %.0f surfaces; "
-                            "allowed: the same number",
-                            {rows->surfaces}));
+    "-vesicle_count {-vesicle_count}: -vesicle_file {-vesicle_file} has %.0f surfaces; allowed: the same number", {rows->surfaces}));
   s->vesicles.count = rows->surfaces;
   PetscCall(PetscStrncpy(s->shape.digest, rows->digest, DIGEST));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
 
 PetscErrorCode SceneMakeSurfaces(Draft s, SurfaceRows *rows) {
   const PetscInt count = s->vesicles.count, size = 3 * HarmonicsCount(s->space.degree);

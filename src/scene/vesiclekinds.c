@@ -169,8 +169,9 @@ static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
 }
 
 static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
+  static const char *const lists[] = {"-vesicle_angle",       "-vesicle_bending",    "-membrane_law",
+                                      "-membrane_stretching", "-membrane_viscosity", "-membrane_memory"};
   const SceneVesicles *own = &scene->vesicles;
-  const SceneMembrane *m = &scene->membrane;
   Curve *curve;
   PetscFunctionBeginUser;
   PetscCall(CurvesFromFile(scene->comm, "-vesicle_file", own->file, NULL, &all->vesicles, &curve, NULL));
@@ -179,17 +180,13 @@ static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   PetscCall(PetscCalloc1(all->kinds, &all->kind));
   for (PetscInt k = 0; k < all->kinds; k++) all->kind[k].curve = curve[k];
   PetscCall(PetscFree(curve));
-  PetscCheck(!SceneGiven(scene, "-vesicle_count") || own->count == all->vesicles, scene->comm, PETSC_ERR_USER_INPUT,
-             "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
-             " curves; allowed: the same number",
-             own->count, own->file, all->vesicles);
-  PetscCall(SceneCheckList(scene, "-vesicle_center", own->center.n, 2, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-vesicle_angle", own->angle.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-vesicle_bending", m->stiffness.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-membrane_law", m->law.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-membrane_stretching", m->stretching.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-membrane_viscosity", m->viscosity.n, 1, all->vesicles, "curves", "a curve"));
-  PetscCall(SceneCheckList(scene, "-membrane_memory", m->memory.n, 1, all->vesicles, "curves", "a curve"));
+  PetvesCheck(!SceneGiven(scene, "-vesicle_count") || own->count == all->vesicles, scene->comm,
+              "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
+              " curves; allowed: the same number",
+              own->count, own->file, all->vesicles);
+  PetscCall(SceneCheckList(scene, "-vesicle_center", 2, all->vesicles, "curves", "a curve"));
+  for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
+    PetscCall(SceneCheckList(scene, lists[k], 1, all->vesicles, "curves", "a curve"));
   for (PetscInt k = 0; k < all->kinds; k++) {
     all->of[k] = k;
     all->kind[k].material = KindMaterial(scene, k);

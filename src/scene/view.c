@@ -2,64 +2,62 @@
 #include "scene/scene.h"
 #include "scene/checks.h"
 #include "scene/properties.h"
-#include "scene/space.h"
 #include "scene/table.h"
 
-/* "what = low", or "what = low to high". */
-static PetscErrorCode ViewRange(PetscViewer v, const char what[], PetscReal low, PetscReal high) {
+/* Print the texts of the rows whose conditions hold, a line each. */
+static PetscErrorCode ViewRows(Scene scene, PetscViewer v, size_t rows, const SceneRule row[]) {
+  char text[PETVES_MAX_MESSAGE];
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(v, low < high ? "%s%g to %g\n" : "%s%g\n", what, (double)low, (double)high));
+  for (size_t k = 0; k < rows; k++) {
+    if (!row[k].holds) continue;
+    PetscCall(SceneText(scene, 1, &row[k], text));
+    PetscCall(PetscViewerASCIIPrintf(v, "%s\n", text));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+#define VIEW(scene, viewer, rows) ViewRows(scene, viewer, sizeof(rows) / sizeof((rows)[0]), rows)
 
-static PetscErrorCode ViewFluid(Scene scene, PetscViewer v) {
-  static const char *const forms[] = {"disturbance of the background flow", "total velocity with moving walls"};
-  const PetscBool no_mean = scene->fluid.inertia == INERTIA_NONE && scene->fluid.bc[0] == BC_PERIODIC &&
-                            scene->fluid.bc[1] == BC_PERIODIC;
+/* clang-format off */
+static PetscErrorCode ViewFluid(Scene s, PetscViewer v) {
+  const FluidSpec *f = &s->fluid;
+  const PetscBool contrast = SceneHasContrast(s);
   PetscReal low = PETSC_MAX_REAL, high = 0;
   char model[SCENE_MODEL];
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < scene->shape.vesicles; k++) {
-    low = PetscMin(low, SceneViscosityRatio(scene, k));
-    high = PetscMax(high, SceneViscosityRatio(scene, k));
+  for (PetscInt k = 0; k < s->shape.vesicles; k++) {
+    low = PetscMin(low, SceneViscosityRatio(s, k));
+    high = PetscMax(high, SceneViscosityRatio(s, k));
   }
-  SceneModel(scene, model);
-  PetscCall(PetscViewerASCIIPrintf(v, "fluid: %s, nu = %g, solved for the %s\n", model, (double)scene->fluid.nu,
-                                   forms[scene->fluid.form]));
-  PetscCall(PetscViewerASCIIPrintf(v, scene->reynolds >= 0 ? "Reynolds number: %.4g\n" : "Reynolds number: not known\n",
-                                   (double)scene->reynolds));
-  if (scene->shape.vesicles && SceneHasGravity(scene))
-    PetscCall(PetscViewerASCIIPrintf(v, "gravity: %g,%g by the vesicles' density differences\n",
-                                     (double)scene->gravity.g.v[0], (double)scene->gravity.g.v[1]));
-  if (SceneHasContrast(scene)) PetscCall(ViewRange(v, "viscosity inside over outside: ", low, high));
-  if (scene->fluid.drive == DRIVE_FLUX) PetscCall(PetscViewerASCIIPrintf(v, "channel: no flux of the disturbance\n"));
-  if (no_mean) PetscCall(PetscViewerASCIIPrintf(v, "periodic box: the disturbance has no mean flow\n"));
-  if (*scene->warning) PetscCall(PetscViewerASCIIPrintf(v, "warning: %s\n", scene->warning));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  SceneModel(s, model);
+  const SceneRule rows[] = {
+    {f->form == FORM_DISTURBANCE, "fluid: %s, nu = {-fluid_viscosity}, solved for the disturbance of the background flow", .word = {model}},
+    {f->form == FORM_TOTAL, "fluid: %s, nu = {-fluid_viscosity}, solved for the total velocity with moving walls", .word = {model}},
+    {s->reynolds >= 0, "Reynolds number: %.4g", {s->reynolds}},
+    {!(s->reynolds >= 0), "Reynolds number: not known"},
+    {s->shape.vesicles && SceneHasGravity(s), "gravity: {-fluid_gravity} by the vesicles' density differences"},
+    {contrast && low >= high, "viscosity inside over outside: %g", {low}},
+    {contrast && low < high, "viscosity inside over outside: %g to %g", {low, high}},
+    {f->drive == DRIVE_FLUX, "channel: no flux of the disturbance"},
+    {f->inertia == INERTIA_NONE && f->bc[0] == BC_PERIODIC && f->bc[1] == BC_PERIODIC, "periodic box: the disturbance has no mean flow"},
+    {*s->warning, "warning: %s", .word = {s->warning}}};
+  return VIEW(s, v, rows);
 }
 
 /* The background flow, and its dimensionless number where it has one. */
-static PetscErrorCode ViewFlow(Scene scene, PetscViewer v) {
-  static const char *const names[] = {"quiescent", "shear", "poiseuille", "extension", "uniform", "custom", "formula"};
-  const PetscInt type = scene->flow.type;
-  const PetscBool channel = type == FLOW_POISEUILLE;
-  const PetscReal R0 = scene->shape.longest / (2 * PETSC_PI), c_b = scene->membrane.bending;
-  const PetscReal time = c_b > 0 ? scene->fluid.nu * PetscPowRealInt(R0, 3) / c_b : 0;
-  const PetscReal value = channel ? scene->flow.peak : scene->flow.rate;
-  char of[256] = "", number[256] = "";
-  PetscFunctionBeginUser;
-  if (channel || type == FLOW_SHEAR || type == FLOW_EXTENSION)
-    PetscCall(PetscSNPrintf(of, sizeof(of), ", %s = %g", channel ? "u_max" : "rate", (double)value));
-  if (*of && time > 0)
-    PetscCall(PetscSNPrintf(number, sizeof(number), ": %s = %g with R0 = %g, nu R0^3/c_b = %g",
-                            channel ? "Ca = u_max nu R0^2/c_b" : "chi = rate nu R0^3/c_b",
-                            (double)(channel ? value * time / R0 : value * time), (double)R0, (double)time));
-  if (type == FLOW_FORMULA)
-    PetscCall(
-        PetscSNPrintf(of, sizeof(of), ", u = %.100s, v = %.100s", scene->flow.formula[0], scene->flow.formula[1]));
-  PetscCall(PetscViewerASCIIPrintf(v, "background flow: %s%s%s\n", names[type], of, number));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static PetscErrorCode ViewFlow(Scene s, PetscViewer v) {
+  const Flow *flow = &s->flow;
+  const PetscReal R0 = s->shape.longest / (2 * PETSC_PI), c_b = s->membrane.bending;
+  const PetscReal time = c_b > 0 ? s->fluid.nu * PetscPowRealInt(R0, 3) / c_b : 0;
+  const PetscBool channel = flow->type == FLOW_POISEUILLE, strain = flow->type == FLOW_SHEAR || flow->type == FLOW_EXTENSION;
+  const SceneRule rows[] = {
+    {channel && time > 0, "background flow: {-flow_type}, u_max = %g: Ca = u_max nu R0^2/c_b = %g with R0 = %g, nu R0^3/c_b = %g", {flow->peak, flow->peak * time / R0, R0, time}},
+    {strain && time > 0, "background flow: {-flow_type}, rate = %g: chi = rate nu R0^3/c_b = %g with R0 = %g, nu R0^3/c_b = %g", {flow->rate, flow->rate * time, R0, time}},
+    {channel && time == 0, "background flow: {-flow_type}, u_max = %g", {flow->peak}},
+    {strain && time == 0, "background flow: {-flow_type}, rate = %g", {flow->rate}},
+    {flow->type == FLOW_FORMULA, "background flow: {-flow_type}, u = %.100s, v = %.100s", .word = {flow->formula[0], flow->formula[1]}},
+    {!channel && !strain && flow->type != FLOW_FORMULA, "background flow: {-flow_type}"}};
+  return VIEW(s, v, rows);
 }
+/* clang-format on */
 
 static const char *ViewNearField(Scene scene) {
   if (scene->coupling.near_field == NEAR_NONE) return "none";
@@ -78,34 +76,31 @@ static PetscReal ShapePolygonArea(const Shape *s) {
   return area;
 }
 
-static PetscErrorCode ViewVesicles(Scene scene, PetscViewer v) {
-  const Shape *shape = &scene->shape;
-  const PetscReal *b = scene->fluid.box;
-  PetscReal soft = PETSC_MAX_REAL;
-  PetscInt few = PETSC_MAX_INT, many = 0;
-  char least[32] = "";
+/* clang-format off */
+static PetscErrorCode ViewVesicles(Scene s, PetscViewer v) {
+  static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
+  const PetscInt n = s->shape.vesicles, *start = s->shape.start;
+  const PetscReal *b = s->fluid.box, part = ShapePolygonArea(&s->shape) / ((b[1] - b[0]) * (b[3] - b[2])), hard = s->membrane.bending;
+  const char *const packed = s->vesicles.packing > 0 ? ", packed" : "";
+  PetscReal soft = PETSC_MAX_REAL, few = PETSC_MAX_REAL, many = 0;
   PetscFunctionBeginUser;
-  if (!shape->vesicles) PetscCall(PetscViewerASCIIPrintf(v, "vesicle: none (no tension solve, no bending solve)\n"));
-  for (PetscInt k = 0; k < shape->vesicles; k++) {
-    const PetscInt M = shape->start[k + 1] - shape->start[k];
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal M = start[k + 1] - start[k];
     few = PetscMin(few, M);
     many = PetscMax(many, M);
-    soft = PetscMin(soft, scene->membrane.material[k].bending);
-    if (shape->vesicles > FEW) continue;
-    PetscCall(
-        PetscViewerASCIIPrintf(v, "vesicle %" PetscInt_FMT ": %" PetscInt_FMT " markers, tension on\n", k + 1, M));
+    soft = PetscMin(soft, s->membrane.material[k].bending);
+    const SceneRule one[] = {{n <= FEW, "vesicle %.0f: %.0f markers, tension on", {k + 1, M}}};
+    PetscCall(VIEW(s, v, one));
   }
-  if (few < many) PetscCall(PetscSNPrintf(least, sizeof(least), "%" PetscInt_FMT " to ", few));
-  if (shape->vesicles > FEW)
-    PetscCall(PetscViewerASCIIPrintf(
-        v, "vesicles: %" PetscInt_FMT " of %s%" PetscInt_FMT " markers, area fraction %.4g%s\n", shape->vesicles, least,
-        many, (double)(ShapePolygonArea(shape) / ((b[1] - b[0]) * (b[3] - b[2]))),
-        scene->vesicles.packing > 0 ? ", packed" : ""));
-  if (!shape->vesicles || scene->membrane.bending == 0)
-    PetscCall(PetscViewerASCIIPrintf(v, "bending: off (no bending solve)\n"));
-  else
-    PetscCall(ViewRange(v, "bending: on, c_b = ", soft, scene->membrane.bending));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const SceneRule rows[] = {
+    {!n, "vesicle: none (no tension solve, no bending solve)"},
+    {n > FEW && few < many, "vesicles: %.0f of %.0f to %.0f markers, area fraction %.4g%s", {n, few, many, part}, {packed}},
+    {n > FEW && few == many, "vesicles: %.0f of %.0f markers, area fraction %.4g%s", {n, many, part}, {packed}},
+    {!n || hard == 0, "bending: off (no bending solve)"},
+    {n && hard > 0 && soft >= hard, "bending: on, c_b = %g", {soft}},
+    {n && hard > 0 && soft < hard, "bending: on, c_b = %g to %g", {soft, hard}},
+    {n, "membrane: kernel {-delta_type}, %s, near field %s, area target %s", .word = {derivatives[s->membrane.derivative], ViewNearField(s), SceneHasAreaTarget(s) ? "on" : "off"}}};
+  return VIEW(s, v, rows);
 }
 
 /* The defaults that depend on the scene, where one is in force. */
@@ -120,57 +115,62 @@ static PetscErrorCode ViewDefaults(Scene scene, PetscViewer v) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SceneView(Scene scene, PetscViewer v) {
-  static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
-  static const char *const bc[] = {"wall", "periodic", "free"};
-  const PetscReal *b = scene->fluid.box, h = FluidSpecCellSize(&scene->fluid);
-  const Shape *shape = &scene->shape;
+static PetscErrorCode ViewPlane(Scene s, PetscViewer v) {
+  const PetscReal *b = s->fluid.box, h = FluidSpecCellSize(&s->fluid);
+  const PetscBool free = FluidSpecIsFree(&s->fluid), fixed = s->time.adapt == ADAPT_NONE;
+  const SceneRule domain[] = {
+    {1, "domain: [%g,%g] x [%g,%g], %.0f x %.0f cells, h = %g, {-domain_bc_x} in x, {-domain_bc_y} in y", {b[0], b[1], b[2], b[3], s->fluid.cells[0], s->fluid.cells[1], h}}};
+  const SceneRule scheme[] = {
+    {fixed, "scheme: {-scheme_type}, order {-scheme_order}, dt = {-time_step} to t = {-time_end}"},
+    {!fixed, "scheme: {-scheme_type}, order {-scheme_order}, dt = {-time_step} at first, then by -time_adapt error, to t = {-time_end}"},
+    {free, "unbounded fluid: no Stokes solve, the box is the window of the fields"},
+    {!free, "fast solves: helmholtz {-helmholtz_type}, poisson {-poisson_type}"}};
   PetscFunctionBeginUser;
-  if (scene->dim != DIM_PLANE) {
-    PetscCall(SceneViewSpace(scene, v));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  PetscCall(VIEW(s, v, domain));
+  PetscCall(ViewFluid(s, v));
+  PetscCall(ViewFlow(s, v));
+  PetscCall(ViewVesicles(s, v));
+  PetscCall(VIEW(s, v, scheme));
+  return ViewDefaults(s, v);
+}
+
+static PetscErrorCode ViewSpace(Scene s, PetscViewer v) {
+  const PetscBool axial = (PetscBool)(s->dim == DIM_AXIAL), in_tube = (PetscBool)(s->space.tube.radius > 0);
+  const PetscInt p = s->space.degree, n = axial ? 3 * p + 2 : 4 * PetscSqr(p + 1);
+  const char *const about = axial ? ", axisymmetric about x" : "", *const throat = s->space.tube.throat > 0 ? " with a throat" : "";
+  const SceneRule rows[] = {
+    {!in_tube, "fluid: quasi-steady flow without bounds in three dimensions%s, nu = {-fluid_viscosity}", .word = {about}},
+    {in_tube, "fluid: quasi-steady flow in a tube of radius {-tube_radius}%s in three dimensions%s, nu = {-fluid_viscosity}", .word = {throat, about}},
+    {1, "vesicles: {-vesicle_count} of %.0f unknowns, spherical harmonics of degree {-sphere_degree}", {n}},
+    {1, "scheme: order {-scheme_order}, dt = {-time_step} to t = {-time_end}, labels at the rate {-sphere_label_rate}"}};
+  return VIEW(s, v, rows);
+}
+/* clang-format on */
+
+PetscErrorCode SceneView(Scene scene, PetscViewer v) {
+  PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
   PetscCall(PetscViewerASCIIPushTab(v));
-  PetscCall(PetscViewerASCIIPrintf(
-      v, "domain: [%g,%g] x [%g,%g], %" PetscInt_FMT " x %" PetscInt_FMT " cells, h = %g, %s in x, %s in y\n",
-      (double)b[0], (double)b[1], (double)b[2], (double)b[3], scene->fluid.cells[0], scene->fluid.cells[1], (double)h,
-      bc[scene->fluid.bc[0]], bc[scene->fluid.bc[1]]));
-  PetscCall(ViewFluid(scene, v));
-  PetscCall(ViewFlow(scene, v));
-  PetscCall(ViewVesicles(scene, v));
-  if (shape->vesicles)
-    PetscCall(PetscViewerASCIIPrintf(v, "membrane: kernel %s, %s, near field %s, area target %s\n",
-                                     scene->coupling.kernel, derivatives[scene->membrane.derivative],
-                                     ViewNearField(scene), SceneHasAreaTarget(scene) ? "on" : "off"));
-  PetscCall(PetscViewerASCIIPrintf(v, "scheme: %s, order %" PetscInt_FMT ", dt = %g%s to t = %g\n", scene->scheme.type,
-                                   scene->scheme.order, (double)scene->time.dt,
-                                   scene->time.adapt == ADAPT_NONE ? "" : " at first, then by -time_adapt error,",
-                                   (double)scene->time.end));
-  if (FluidSpecIsFree(&scene->fluid))
-    PetscCall(PetscViewerASCIIPrintf(v, "unbounded fluid: no Stokes solve, the box is the window of the fields\n"));
-  else
-    PetscCall(PetscViewerASCIIPrintf(v, "fast solves: helmholtz %s, poisson %s\n", scene->fluid.helmholtz,
-                                     scene->fluid.poisson));
-  PetscCall(ViewDefaults(scene, v));
+  PetscCall(scene->dim == DIM_PLANE ? ViewPlane(scene, v) : ViewSpace(scene, v));
   PetscCall(PetscViewerASCIIPopTab(v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 PetscErrorCode SceneSayModel(Scene s) {
-  const char *steps = s->time.adapt == ADAPT_NONE ? "fixed steps of" : "adaptive steps from";
-  char model[SCENE_MODEL], reynolds[64] = "";
+  char model[SCENE_MODEL] = "", text[PETVES_MAX_MESSAGE];
+  const char *const steps = s->time.adapt == ADAPT_NONE ? "fixed steps of" : "adaptive steps from";
+  const char *const where = s->space.tube.radius > 0 ? "in a tube" : "without bounds";
   PetscFunctionBeginUser;
-  if (s->dim != DIM_PLANE) {
-    PetscCall(PetvesSay(s->comm, "petves: quasi-steady flow %s, %s, degree %" PetscInt_FMT ", %s %g\n",
-                        s->space.tube.radius > 0 ? "in a tube" : "without bounds",
-                        s->dim == DIM_AXIAL ? "axisymmetric" : "three dimensions", s->space.degree, steps,
-                        (double)s->time.dt));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  SceneModel(s, model);
-  if (s->reynolds > 0) PetscCall(PetscSNPrintf(reynolds, sizeof(reynolds), ", Re = %.3g", (double)s->reynolds));
-  PetscCall(PetvesSay(s->comm, "petves: %s%s, %s %g\n", model, s->reynolds >= 0 ? reynolds : ", Re not known", steps,
-                      (double)s->time.dt));
+  if (s->dim == DIM_PLANE) SceneModel(s, model);
+  const SceneRule rows[] = {
+    {s->dim == DIM_AXIAL, "quasi-steady flow %s, axisymmetric, degree {-sphere_degree}, %s {-time_step}", .word = {where, steps}},
+    {s->dim == DIM_SPACE, "quasi-steady flow %s, three dimensions, degree {-sphere_degree}, %s {-time_step}", .word = {where, steps}},
+    {s->reynolds > 0, "%s, Re = %.3g, %s {-time_step}", {s->reynolds}, {model, steps}},
+    {s->reynolds == 0, "%s, %s {-time_step}", .word = {model, steps}},
+    {1, "%s, Re not known, %s {-time_step}", .word = {model, steps}}};
+  PetscCall(SCENE_TEXT(s, rows, text));
+  PetscCall(PetvesSay(s->comm, "petves: %s\n", text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+/* clang-format on */
