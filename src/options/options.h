@@ -17,17 +17,24 @@ typedef struct {
   PetscInt *v; /* [n] */
 } IntList;
 
+/* ListEntry - number `component` of entry `entry` of a list with `each` numbers an entry, or the same for all.
+   ListLargest - the largest number of a list, at least 0. Not collective. */
+PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
+PETSC_EXTERN PetscReal ListLargest(const RealList *list);
+
 /* What a row's offset holds: PetscReal, PetscInt, PetscBool, PetscInt (index in the range's list),
    char[OPTION_MAX_NAME], char[PETSC_MAX_PATH_LEN] (a file, or any text), RealList, IntList (where the range is
    a list, of indices in it). */
 typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_ENUM, OPT_NAME, OPT_PATH, OPT_TEXT, OPT_REALS, OPT_INTS } OptionType;
 
-/* What has to be there for an option to mean something: an enum in the values that is one of some, or a condition. */
+/* What has to be there for an option to mean something: an enum in the values that is one of some, a condition, or a
+   number above 0. */
 typedef struct {
   const char *what; /* for a message: "-flow_type shear or extension" */
   size_t offset;    /* of a PetscInt, and */
   unsigned any_of;  /* bit k: the value k is one of those; where it is 0: */
   PetscBool (*met)(const void *values);
+  size_t positive; /* where it is NULL: the offset of a PetscReal */
 } OptionNeed;
 
 typedef struct {

@@ -2,6 +2,16 @@
 #include "options/options.h"
 #include <ctype.h>
 
+PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component) {
+  return list->v[list->n > each ? each * entry + component : component];
+}
+
+PetscReal ListLargest(const RealList *list) {
+  PetscReal largest = 0;
+  for (PetscInt k = 0; k < list->n; k++) largest = PetscMax(largest, list->v[k]);
+  return largest;
+}
+
 static void *OptionPlace(const OptionTable *t, void *values, PetscInt i) {
   return (char *)values + t->row[i].offset;
 }
@@ -83,13 +93,16 @@ PetscErrorCode OptionsDepend(const OptionTable *t, void *values) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool OptionNeedIsMet(const OptionNeed *need, const char *values) {
+  if (need->met) return need->met(values);
+  if (need->any_of) return need->any_of >> *(const PetscInt *)(values + need->offset) & 1;
+  return *(const PetscReal *)(values + need->positive) > 0;
+}
+
 const char *OptionMissing(const OptionTable *t, const OptionRow *row, const void *values) {
-  const OptionNeed *need = row->need;
   const char *missing = t->missing ? t->missing(row, values) : NULL;
-  if (missing || !need) return missing;
-  const PetscBool there = need->met ? need->met(values)
-                                    : need->any_of >> *(const PetscInt *)((const char *)values + need->offset) & 1;
-  return there ? NULL : need->what;
+  if (missing || !row->need) return missing;
+  return OptionNeedIsMet(row->need, (const char *)values) ? NULL : row->need->what;
 }
 
 PetscErrorCode OptionsCheckUsed(const OptionTable *t, const void *values) {

@@ -75,7 +75,8 @@ static PetscErrorCode OptionParseNumbers(MPI_Comm comm, const OptionRow *o, cons
     PetscCall(OptionParseNumber(comm, o, all, item, *x + k));
     text += length + 1;
   }
-  PetscFunctionReturn(PetscFree(item));
+  PetscCall(PetscFree(item));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode OptionParseTruth(MPI_Comm comm, const OptionRow *o, const char *text, PetscBool *truth) {
@@ -126,7 +127,8 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
     ints->n = n;
     for (PetscInt k = 0; k < n; k++) ints->v[k] = (PetscInt)x[k];
   }
-  PetscFunctionReturn(PetscFree(x));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OptionText(const OptionTable *t, const void *values, PetscInt i, char **text) {

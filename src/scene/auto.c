@@ -163,19 +163,13 @@ PetscErrorCode SceneChooseMarkers(Draft scene) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Write a number, for a value; nothing where the scene has none. */
-static PetscErrorCode AutoNumber(const char format[], PetscReal number, char value[AUTO_TEXT]) {
-  PetscFunctionBeginUser;
-  if (number < PETSC_MAX_REAL) PetscCall(PetscSNPrintf(value, AUTO_TEXT, format, (double)number));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SuggestStep(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscReal rate = FlowShearRate(&s->flow), rest = SceneRestTime(s),
                   time = rate > 0 ? PetscMin(rest, 1 / rate) : rest;
   const PetscBool timed = time < PETSC_MAX_REAL;
   (void)snprintf(why, AUTO_TEXT, timed ? "a twentieth of the fastest time of the scene" : "the default");
-  return AutoNumber("%.6g", timed ? 0.05 * time : time, value);
+  if (timed) (void)snprintf(value, AUTO_TEXT, "%.6g", (double)(0.05 * time));
+  return PETSC_SUCCESS;
 }
 
 /* Where the flow compresses a vesicle so fast that it wrinkles, the tolerance is a hundredth of the error wanted, whose
@@ -190,7 +184,8 @@ static PetscErrorCode SuggestTolerance(Draft s, char value[AUTO_TEXT], char why[
                    (double)(WRINKLES_LEAVE * wanted));
   else if (s->time.adapt == ADAPT_ERROR)
     (void)snprintf(why, AUTO_TEXT, "steps leave up to %.1e", (double)CalibratedRow(s)->of_steps);
-  return AutoNumber("%g", chi > 0 ? wanted / OF_WRINKLES : CalibratedRow(s)->adapt_tol, value);
+  (void)snprintf(value, AUTO_TEXT, "%g", (double)(chi > 0 ? wanted / OF_WRINKLES : CalibratedRow(s)->adapt_tol));
+  return PETSC_SUCCESS;
 }
 
 /* The largest step is that for the error at rest, but not larger than the flow bears. */
@@ -202,7 +197,8 @@ static PetscErrorCode SuggestLargestStep(Draft s, char value[AUTO_TEXT], char wh
   else if (bends)
     (void)snprintf(why, AUTO_TEXT, "%g nu R0^3/c_b: leaves up to %.1e of the energy at rest", (double)own,
                    (double)CalibratedRow(s)->of_rest);
-  return AutoNumber("%.6g", rest < PETSC_MAX_REAL ? PetscMin(own * rest, flow) : rest, value);
+  if (rest < PETSC_MAX_REAL) (void)snprintf(value, AUTO_TEXT, "%.6g", (double)PetscMin(own * rest, flow));
+  return PETSC_SUCCESS;
 }
 
 static PetscErrorCode SuggestSolver(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
@@ -315,21 +311,18 @@ static PetscErrorCode AutoReportSetting(Scene s, const char name[], const char w
 #define MANY_MARKERS 700     /* from so many markers on the block of a vesicle takes a second and more */
 #define BLOCK_SECONDS 3.5e-9 /* seconds of a block over the third power of the markers */
 
+/* clang-format off */
 /* Warn of vesicles whose dense blocks in the solve take long to make. */
 static PetscErrorCode AutoReportMarkers(Scene scene) {
+  const PetscInt *start = scene->shape.start;
   PetscInt most = 0;
-  PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < scene->shape.vesicles && !SceneIsProjection(scene); v++)
-    most = PetscMax(most, scene->shape.start[v + 1] - scene->shape.start[v]);
-  if (most < MANY_MARKERS) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetvesSay(scene->comm,
-                      "petves: warning: %" PetscInt_FMT
-                      " markers on a vesicle: its dense block in the solve takes about "
-                      "%.1g s to make, some five times in the first step, in proportion to markers^3; fewer "
-                      "-vesicle_markers or a larger -vesicle_spacing take less\n",
-                      most, BLOCK_SECONDS * PetscPowRealInt((PetscReal)most, 3)));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt v = 0; v < scene->shape.vesicles && !SceneIsProjection(scene); v++) most = PetscMax(most, start[v + 1] - start[v]);
+  if (most < MANY_MARKERS) return PETSC_SUCCESS;
+  return PetvesSay(scene->comm,
+    "petves: warning: %" PetscInt_FMT " markers on a vesicle: its dense block in the solve takes about %.1g s to make, some five times in the first step, in proportion to markers^3; fewer -vesicle_markers or a larger -vesicle_spacing take less\n",
+    most, BLOCK_SECONDS * PetscPowRealInt((PetscReal)most, 3));
 }
+/* clang-format on */
 
 PetscErrorCode SceneReport(Scene s) {
   PetscFunctionBeginUser;
@@ -347,6 +340,5 @@ PetscErrorCode SceneReport(Scene s) {
     if (!space) PetscCall(SceneReportGrid(s));
   }
   if (*s->warning) PetscCall(PetvesSay(s->comm, "petves: warning: %s\n", s->warning));
-  PetscCall(AutoReportMarkers(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(AutoReportMarkers(s));
 }

@@ -37,15 +37,13 @@ static PetscErrorCode SceneCountVesicles(Scene s, PetscInt *count) {
 
 /* Find out whether the scene asks for something that unbounded fluid does not have. */
 static PetscErrorCode SceneNeedsGrid(Scene s, PetscBool *needs) {
-  static const char *const backends[] = {"-helmholtz_type", "-poisson_type"};
   const PetscBool box_part = SceneGiven(s, "-coupling_box_part") && s->coupling.box_part;
   PetscInt count;
   PetscFunctionBeginUser;
   PetscCall(SceneCountVesicles(s, &count));
   *needs = strcmp(s->scheme.type, "coupled") || s->coupling.near_field != NEAR_EXACT || box_part ||
-           s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE || count > SCENE_MOST_FREE;
-  for (size_t k = 0; k < sizeof(backends) / sizeof(backends[0]); k++)
-    if (SceneGiven(s, backends[k])) *needs = PETSC_TRUE;
+           s->fluid.inertia == INERTIA_UNSTEADY || s->fluid.inertia == INERTIA_CONVECTIVE || count > SCENE_MOST_FREE ||
+           SceneGiven(s, "-helmholtz_type") || SceneGiven(s, "-poisson_type");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,26 +54,22 @@ static PetscErrorCode SceneNeedsGrid(Scene s, PetscBool *needs) {
 PetscErrorCode SceneSuggestBoundaryX(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   PetscBool needs = PETSC_TRUE;
   PetscFunctionBeginUser;
-  if (!SceneGiven(s, "-domain_box")) PetscCall(PetscStrncpy(why, "the default", AUTO_TEXT));
-  if (SceneGiven(s, "-domain_box") || SceneGiven(s, "-domain_bc_y") || s->vesicles.shape == SHAPE_NONE || !BoxIsOpen(s))
+  if (SceneGiven(s, "-domain_box")) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)snprintf(why, AUTO_TEXT, "the default");
+  if (SceneGiven(s, "-domain_bc_y") || s->vesicles.shape == SHAPE_NONE || !BoxIsOpen(s))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneNeedsGrid(s, &needs));
-  if (!needs) {
-    PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
-    PetscCall(PetscStrncpy(why, UNBOUNDED, AUTO_TEXT));
-  } else if (s->flow.type != FLOW_EXTENSION) {
-    PetscCall(PetscStrncpy(value, "periodic", AUTO_TEXT));
-    PetscCall(PetscStrncpy(why, "the default: a place between four walls is not stable", AUTO_TEXT));
-  }
+  if (needs && s->flow.type == FLOW_EXTENSION) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)snprintf(value, AUTO_TEXT, needs ? "periodic" : "free");
+  (void)snprintf(why, AUTO_TEXT, needs ? "the default: a place between four walls is not stable" : UNBOUNDED);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SceneSuggestBoundaryY(Draft s, char value[AUTO_TEXT], char why[AUTO_TEXT]) {
   const PetscBool free = FluidSpecIsFree(&s->fluid) && !SceneGiven(s, "-domain_bc_x");
-  PetscFunctionBeginUser;
-  if (free) PetscCall(PetscStrncpy(value, "free", AUTO_TEXT));
-  if (free || !SceneGiven(s, "-domain_box")) PetscCall(PetscStrncpy(why, free ? UNBOUNDED : "the default", AUTO_TEXT));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (free) (void)snprintf(value, AUTO_TEXT, "free");
+  if (free || !SceneGiven(s, "-domain_box")) (void)snprintf(why, AUTO_TEXT, free ? UNBOUNDED : "the default");
+  return PETSC_SUCCESS;
 }
 
 /* The numbers that box and grid follow from: radii, the rectangle around all vesicles, and the least distance of a
@@ -106,8 +100,7 @@ static PetscErrorCode ExtentMeasure(Draft s, Extent *e) {
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
-  PetscCall(SceneDropShape(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(SceneDropShape(s));
 }
 
 /* x with two digits, rounded up (1), or to the nearest (0). */

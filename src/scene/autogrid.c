@@ -128,7 +128,7 @@ static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
   if (error == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SCENE_TEXT(scene, errors, leaves));
   PetscCall(SCENE_TEXT(scene, rows, what));
-  return PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what);
+  PetscFunctionReturn(PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what));
 }
 
 PetscErrorCode SceneReportGrid(Scene scene) {
@@ -154,6 +154,6 @@ PetscErrorCode SceneReportGrid(Scene scene) {
   PetscCall(SCENE_TEXT(scene, errors, leaves));
   PetscCall(SCENE_TEXT(scene, rows, what));
   PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g, %s: %s\n", (double)cells, leaves, what));
-  return AutoReportWall(scene, fluid);
+  PetscFunctionReturn(AutoReportWall(scene, fluid));
 }
 /* clang-format on */

@@ -283,8 +283,7 @@ static PetscErrorCode SceneCheckVesicles(Scene s) {
   PetscCall(REFUSE(s, shapes));
   if (!file) PetscCall(SceneCheckKinds(s, "-vesicle_semi_axes", 2)); /* how many a file has is known later */
   for (size_t k = 0; k < sizeof(kinds) / sizeof(kinds[0]) && !file; k++) PetscCall(SceneCheckKinds(s, kinds[k], 1));
-  PetscCall(REFUSE(s, markers));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(REFUSE(s, markers));
 }
 /* clang-format on */
 
@@ -294,8 +293,7 @@ PetscErrorCode SceneCheck(Scene scene) {
   PetscCall(SceneCheckMembranes(scene));
   PetscCall(SceneCheckLengths(scene));
   PetscCall(SceneCheckFlow(scene));
-  PetscCall(SceneCheckVesicles(scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(SceneCheckVesicles(scene));
 }
 
 /* Unbounded fluid: the step is dense work on the markers alone; there is no grid on which a fluid with inertia or a
@@ -347,6 +345,5 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   PetscCall(SceneCheckList(s, "-vesicle_density_difference", 1, entries, what, "a vesicle"));
   PetscCall(REFUSE(s, forces));
   if (vesicles) PetscCall(SceneCheckList(s, "-vesicle_viscosity_ratio", 1, entries, what, "a vesicle or kind"));
-  PetscCall(REFUSE(s, viscosities));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(REFUSE(s, viscosities));
 }

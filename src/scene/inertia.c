@@ -112,12 +112,12 @@ void SceneModel(Scene s, char text[SCENE_MODEL]) {
 /* Cells between markers, from which on fluid with inertia passes between them; the default has 2. */
 #define SPARSE 2.2
 
+/* clang-format off */
 /* Warn of the vesicle whose markers are the farthest apart. */
 static PetscErrorCode SceneWarnOfSparse(Draft scene) {
   const Shape *shape = &scene->shape;
   PetscReal most = 0;
   PetscInt widest = 0, markers = 0;
-  PetscFunctionBeginUser;
   for (PetscInt v = 0; v < shape->vesicles; v++) {
     const PetscInt n = shape->start[v + 1] - shape->start[v];
     const PetscReal apart = 2 * PETSC_PI * ShapeRadius(shape, v) / n / FluidSpecCellSize(&scene->fluid);
@@ -126,17 +126,12 @@ static PetscErrorCode SceneWarnOfSparse(Draft scene) {
     widest = v;
     markers = n;
   }
-  if (scene->fluid.inertia == INERTIA_NONE || SceneIsProjection(scene) || most <= SPARSE || *scene->warning)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
-                          "%" PetscInt_FMT " markers of vesicle %" PetscInt_FMT
-                          " are %.2g cells apart: with inertia the fluid passes between markers more than 2 cells "
-                          "apart, and small steps do not converge; take -vesicle_markers %" PetscInt_FMT,
-                          markers, widest + 1, (double)most, (PetscInt)PetscCeilReal(markers * most / 2) | 1));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const SceneRule rules[] = {
+    {scene->fluid.inertia != INERTIA_NONE && !SceneIsProjection(scene) && most > SPARSE,
+     "%.0f markers of vesicle %.0f are %.2g cells apart: with inertia the fluid passes between markers more than 2 cells apart, and small steps do not converge; take -vesicle_markers %.0f", {markers, widest + 1, most, (PetscInt)PetscCeilReal(markers * most / 2) | 1}}};
+  return SCENE_TEXT(scene, rules, scene->warning);
 }
 
-/* clang-format off */
 PetscErrorCode SceneChooseInertia(Draft scene) {
   const PetscReal carried = SceneCarriedReynolds(scene), R0 = SceneLargestRadius(scene);
   const PetscBool custom = FlowIsCustom(&scene->flow);
@@ -157,14 +152,12 @@ PetscErrorCode SceneChooseInertia(Draft scene) {
   }
   PetscCall(SCENE_REFUSE_IF(scene, !seamless && scene->fluid.inertia == INERTIA_CONVECTIVE,
     "-fluid_inertia convective: the background flow is not periodic in %c, so it cannot carry the disturbance across that boundary; allowed: -domain_bc_%c wall, or -fluid_inertia none or unsteady", {"xy"[dir % 2], "xy"[dir % 2]}));
-  *scene->warning = 0;
-  if (scene->fluid.inertia == INERTIA_UNSTEADY && !(scene->reynolds <= CARRIED_REYNOLDS) && carried > CARRIED_REYNOLDS)
-    PetscCall(PetscSNPrintf(scene->warning, sizeof(scene->warning),
-                            "-fluid_inertia unsteady at Re = %.3g with a vesicle that the flow carries along: without "
-                            "convection the flow is not Galilean invariant, the vesicle drags the fluid that it "
-                            "displaces behind it and may drift the wrong way; use %s%s",
-                            (double)(custom ? carried : scene->reynolds), custom ? "none" : "convective", baseline ? " with -scheme_type coupled" : ""));
-  PetscCall(SceneWarnOfSparse(scene));
+  const SceneRule astray[] = {
+    {scene->fluid.inertia == INERTIA_UNSTEADY && !(scene->reynolds <= CARRIED_REYNOLDS) && carried > CARRIED_REYNOLDS,
+     "-fluid_inertia unsteady at Re = %.3g with a vesicle that the flow carries along: without convection the flow is not Galilean invariant, the vesicle drags the fluid that it displaces behind it and may drift the wrong way; use %s%s",
+     {custom ? carried : scene->reynolds}, {custom ? "none" : "convective", baseline ? " with -scheme_type coupled" : ""}}};
+  PetscCall(SCENE_TEXT(scene, astray, scene->warning));
+  if (!*scene->warning) PetscCall(SceneWarnOfSparse(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */

@@ -91,11 +91,11 @@ static PetscInt ObstacleHolder(const SceneObstacles *own, PetscInt self, const P
 }
 
 /* The obstacle in whose solid the point of curve `self` (-1: of a vesicle) lies, or -1: within a closed curve, outside
-   all containers or, that of a container, inside another one, on the solid's side of a spanning curve. */
-static PetscInt ObstacleSolidAt(const SceneObstacles *own, PetscInt self, const PetscReal X[2],
+   all containers or, that of a container, inside another one, on the solid's side of a spanning curve. holder: the
+   container that holds the point, or -1. */
+static PetscInt ObstacleSolidAt(const SceneObstacles *own, PetscInt self, PetscInt holder, const PetscReal X[2],
                                 const PetscReal period[2]) {
   const Shape *s = &own->outline;
-  const PetscInt holder = ObstacleHolder(own, self, X, period);
   for (PetscInt b = 0; b < s->vesicles; b++) {
     if (b == self) continue;
     if (!own->container[b] ? ShapeHolds(s, b, X, period) : self >= 0 && own->container[self] ? b == holder : holder < 0)
@@ -108,41 +108,33 @@ static PetscInt ObstacleSolidAt(const SceneObstacles *own, PetscInt self, const 
   return -1;
 }
 
-/* Check that no vesicle and no obstacle is in a solid. */
 /* clang-format off */
-static PetscErrorCode ObstaclesCheckInside(Scene scene, const PetscReal period[2]) {
-  const SceneObstacles *own = &scene->obstacles;
+/* Check that no vesicle and no obstacle is in a solid, given that no curves cross; find the containers around them and
+   the vesicles around obstacles. */
+static PetscErrorCode ObstaclesCheckInside(Draft scene, const PetscReal period[2]) {
+  SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline, *vesicles = &scene->shape;
+  const PetscInt n = vesicles->vesicles;
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < vesicles->vesicles; v++) {
-    const PetscInt b = ObstacleSolidAt(own, -1, vesicles->X + 2 * vesicles->start[v], period);
-    PetscCall(SCENE_REFUSE_IF(scene, b >= 0,
-      "-vesicle_center: vesicle %.0f lies in the solid of obstacle %.0f; allowed: vesicles in the fluid", {v + 1, b + 1}));
-  }
-  for (PetscInt c = 0; c < s->vesicles; c++) {
-    const PetscInt b = ObstacleSolidAt(own, c, s->X + 2 * s->start[c], period);
-    PetscCall(SCENE_REFUSE_IF(scene, b >= 0,
-      "-obstacle_shape: obstacle %.0f lies in the solid of obstacle %.0f; allowed: obstacles in the fluid, apart from one another", {c + 1, b + 1}));
+  for (PetscInt c = -n; c < s->vesicles; c++) { /* vesicles first */
+    const PetscInt self = PetscMax(c, -1);
+    const PetscReal *X = c < 0 ? vesicles->X + 2 * vesicles->start[n + c] : s->X + 2 * s->start[c];
+    own->holder[n + c] = ObstacleHolder(own, self, X, period);
+    const PetscInt b = ObstacleSolidAt(own, self, own->holder[n + c], X, period);
+    const SceneRule rules[] = {
+      {b >= 0 && c < 0,
+       "-vesicle_center: vesicle %.0f lies in the solid of obstacle %.0f; allowed: vesicles in the fluid", {n + c + 1, b + 1}},
+      {b >= 0,
+       "-obstacle_shape: obstacle %.0f lies in the solid of obstacle %.0f; allowed: obstacles in the fluid, apart from one another", {c + 1, b + 1}}};
+    PetscCall(REFUSE(scene, rules));
+    if (c >= 0) own->vesicle[c] = -1;
+    for (PetscInt v = 0; v < n && c >= 0; v++)
+      if (ShapeHolds(vesicles, v, X, period)) own->vesicle[c] = v;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-/* clang-format on */
-
-/* Find the containers around obstacles and vesicles and the vesicles around obstacles, given that no curves cross. */
-static void ObstaclesFindAround(const Shape *vesicles, const PetscReal period[2], SceneObstacles *own) {
-  const Shape *s = &own->outline;
-  for (PetscInt v = 0; v < vesicles->vesicles; v++)
-    own->holder[v] = ObstacleHolder(own, -1, vesicles->X + 2 * vesicles->start[v], period);
-  for (PetscInt b = 0; b < s->vesicles; b++) {
-    own->holder[vesicles->vesicles + b] = ObstacleHolder(own, b, s->X + 2 * s->start[b], period);
-    own->vesicle[b] = -1;
-    for (PetscInt v = 0; v < vesicles->vesicles; v++)
-      if (ShapeHolds(vesicles, v, s->X + 2 * s->start[b], period)) own->vesicle[b] = v;
-  }
-}
 
 /* Check that markers resolve the gaps between obstacles and between an obstacle and its images. */
-/* clang-format off */
 static PetscErrorCode ObstaclesCheckGaps(Scene scene, const PetscReal period[2]) {
   const SceneObstacles *own = &scene->obstacles;
   const Shape *s = &own->outline;
@@ -188,7 +180,7 @@ static PetscErrorCode ObstaclesCheckCrossing(Scene scene, const PetscReal period
      "-vesicle_center: vesicle %.0f crosses obstacle %.0f; allowed: vesicles in the fluid", {a + 1, b}},
     {a >= n,
      "-obstacle_shape: obstacles %.0f and %.0f cross; allowed: curves apart from one another, from themselves and from their images", {a - n + 1, b}}};
-  return REFUSE(scene, rules);
+  PetscFunctionReturn(REFUSE(scene, rules));
 }
 
 #define MOST_FLUX 1e-6 /* of the sum of |U| ds */
@@ -219,8 +211,8 @@ static PetscErrorCode ObstacleCheckFlux(Scene scene, PetscInt b) {
     flux += U[0] * edge[1] - U[1] * edge[0];
     all += PetscHypotReal(U[0], U[1]) * PetscHypotReal(edge[0], edge[1]);
   }
-  return SCENE_REFUSE_IF(scene, PetscAbsReal(flux) > MOST_FLUX * all,
-    "-obstacle_shape: obstacle %.0f has a flux of %.3g through it, of its surface's velocity less a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them", {b + 1, flux});
+  PetscFunctionReturn(SCENE_REFUSE_IF(scene, PetscAbsReal(flux) > MOST_FLUX * all,
+    "-obstacle_shape: obstacle %.0f has a flux of %.3g through it, of its surface's velocity less a uniform flow's, which no fluid can follow; allowed on a wall and across a period: velocities along them", {b + 1, flux}));
 }
 
 /* Check that only closed curves move, and that one of them does. */
@@ -240,8 +232,8 @@ static PetscErrorCode ObstaclesCheckMotion(Scene scene) {
        "-obstacle_moving: obstacle %.0f has a velocity and spans the box; allowed: closed curves that move, others at rest", {b + 1}}};
     PetscCall(REFUSE(scene, rules));
   }
-  return SCENE_REFUSE_IF(scene, !any,
-    "-obstacle_moving: no obstacle has a velocity or rotation; allowed: -obstacle_velocity or -obstacle_rotation of posts and couette, lines # velocity or # rotation in -obstacle_file");
+  PetscFunctionReturn(SCENE_REFUSE_IF(scene, !any,
+    "-obstacle_moving: no obstacle has a velocity or rotation; allowed: -obstacle_velocity or -obstacle_rotation of posts and couette, lines # velocity or # rotation in -obstacle_file"));
 }
 /* clang-format on */
 
@@ -253,7 +245,6 @@ PetscErrorCode SceneCheckObstacles(Draft scene) {
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(ObstacleCheckPlace(scene, b));
   PetscCall(ObstaclesCheckCrossing(scene, period));
   PetscCall(ObstaclesCheckInside(scene, period));
-  ObstaclesFindAround(&scene->shape, period, &scene->obstacles);
   PetscCall(ObstaclesCheckGaps(scene, period));
   PetscCall(ObstaclesCheckMotion(scene));
   for (PetscInt b = 0; b < scene->obstacles.outline.vesicles; b++) PetscCall(ObstacleCheckFlux(scene, b));

@@ -44,8 +44,8 @@ static PetscErrorCode ArcCheckEnds(Scene scene, PetscInt b, const Curve *c, Pets
       "-obstacle_shape: obstacle %.0f is open and ends at (%g, %g), on no wall; allowed: both ends on one wall of the box, closed curves, and ones whose last point is the first but for a period", {b + 1, X[0], X[1]}));
   }
   *wall = at[0];
-  return SCENE_REFUSE_IF(scene, at[0] != at[1],
-    "-obstacle_shape: obstacle %.0f is open and ends on two walls; allowed: both ends on one", {b + 1});
+  PetscFunctionReturn(SCENE_REFUSE_IF(scene, at[0] != at[1],
+    "-obstacle_shape: obstacle %.0f is open and ends on two walls; allowed: both ends on one", {b + 1}));
 }
 
 /* Find which part of an open curve carries markers, part[2] of its parameter: from where it is half a marker spacing off
@@ -77,7 +77,7 @@ static PetscErrorCode ArcCut(Scene scene, PetscInt b, const Curve *c, PetscReal 
      "-obstacle_shape: obstacle %.0f rises %.3g cells from its wall; allowed: at least %.0f", {b + 1, most / h, LEAST_RISE}},
     {least < height * (1 - 1e-6),
      "-obstacle_shape: obstacle %.0f comes back to its wall between its ends; allowed: a curve of its own for each bump", {b + 1}}};
-  return REFUSE(scene, rules);
+  PetscFunctionReturn(REFUSE(scene, rules));
 }
 /* clang-format on */
 
@@ -96,8 +96,7 @@ static PetscErrorCode ArcBump(Scene scene, int side, Curve *curve) {
     xy[2 * k] = middle + (side ? t : -t) * length;
     xy[2 * k + 1] = side ? box[3] - rise : box[2] + rise;
   }
-  PetscCall(CurveFromPoints(&open, BUMP_POINTS, xy, curve));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(CurveFromPoints(&open, BUMP_POINTS, xy, curve));
 }
 
 /* A curve before it has markers. */
@@ -165,8 +164,7 @@ static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
      "-obstacle_center {-obstacle_center}: not pairs; allowed: x,y of each post"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(scene, rules));
-  PetscCall(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
 }
 
 static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {
@@ -225,6 +223,7 @@ static PetscErrorCode ObstaclesMakeFromFile(Scene scene, Outlines *o) {
 #define MOST_DENSE 4000    /* markers that a dense block of the preconditioner may have */
 #define MOST_TOGETHER 2000 /* markers up to which all obstacles share a dense block */
 
+/* clang-format off */
 /* An odd number of markers on each curve that repeats; on open ones none farther apart than wanted, so that the first
    is half a spacing off its wall. */
 static PetscErrorCode ObstaclesCreateShape(Scene scene, const Outlines *o, Shape *shape) {
@@ -238,10 +237,8 @@ static PetscErrorCode ObstaclesCreateShape(Scene scene, const Outlines *o, Shape
     const PetscBool open = one->curve.kind.type == CURVE_OPEN;
     const PetscReal length = open ? CurvePartLength(&one->curve, one->part[0], one->part[1]) : CurveLength(&one->curve);
     const PetscReal wanted = length / spacing;
-    PetvesCheck(all + wanted <= MOST_MARKERS, scene->comm,
-                "-obstacle_spacing %g: more than %d markers on the obstacles; allowed: at most that many, so a larger "
-                "spacing, fewer obstacles or coarser -domain_cells",
-                (double)scene->obstacles.spacing, MOST_MARKERS);
+    PetscCall(SCENE_REFUSE_IF(scene, all + wanted > MOST_MARKERS,
+      "-obstacle_spacing {-obstacle_spacing}: more than %.0f markers on the obstacles; allowed: at most that many, so a larger spacing, fewer obstacles or coarser -domain_cells", {MOST_MARKERS}));
     const PetscInt n = open ? 1 + (PetscInt)PetscCeilReal(wanted) : 2 * (PetscInt)PetscFloorReal(wanted / 2) + 1;
     markers[k] = PetscMax(LEAST_MARKERS, n);
     all += markers[k];
@@ -261,16 +258,17 @@ static PetscErrorCode ObstaclesChooseFactor(Scene scene, const Outlines *o, Scen
   const PetscBool free = !strcmp(own->free.which, "all") && !FluidSpecIsFree(f);
   const PetscBool many = (free || periodic) && markers > MOST_TOGETHER;
   PetscInt most = 0;
-  PetscFunctionBeginUser;
   own->modes = own->factor == OBSTACLE_FACTOR_AUTO ? many : own->factor == OBSTACLE_FACTOR_MODES;
   for (PetscInt k = 0; k < o->count; k++) most = PetscMax(most, own->outline.start[k + 1] - own->outline.start[k]);
   if (!own->modes) most = markers;
-  PetvesCheck(most <= MOST_DENSE, scene->comm,
-              "-obstacle_spacing %g: %" PetscInt_FMT " markers on %s; allowed: at most %d, so a larger spacing%s",
-              (double)own->spacing, most, own->modes ? "one obstacle" : "the obstacles", MOST_DENSE,
-              own->modes ? " or coarser -domain_cells" : ", coarser -domain_cells, or -obstacle_factor modes");
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const SceneRule rules[] = {
+    {most > MOST_DENSE && own->modes,
+     "-obstacle_spacing {-obstacle_spacing}: %.0f markers on one obstacle; allowed: at most %.0f, so a larger spacing or coarser -domain_cells", {most, MOST_DENSE}},
+    {most > MOST_DENSE,
+     "-obstacle_spacing {-obstacle_spacing}: %.0f markers on the obstacles; allowed: at most %.0f, so a larger spacing, coarser -domain_cells, or -obstacle_factor modes", {most, MOST_DENSE}}};
+  return REFUSE(scene, rules);
 }
+/* clang-format on */
 
 static PetscErrorCode ObstaclesPlaceMarkers(Scene scene, const Outlines *o, SceneObstacles *own) {
   Shape *shape = &own->outline;
@@ -297,14 +295,15 @@ static PetscErrorCode ObstaclesPlaceMarkers(Scene scene, const Outlines *o, Scen
 }
 
 PetscErrorCode SceneMakeObstacles(Draft scene) {
+  static PetscErrorCode (*const make[])(Scene, Outlines *) = {NULL, ObstaclesMakePosts, ObstaclesMakeCouette,
+                                                              ObstaclesMakeConstriction, ObstaclesMakeFromFile};
   Outlines o = {0};
   PetscFunctionBeginUser;
-  if (scene->obstacles.shape == OBSTACLE_NONE) scene->obstacles.moving = PETSC_FALSE;
-  if (scene->obstacles.shape == OBSTACLE_NONE) PetscFunctionReturn(PETSC_SUCCESS);
-  if (scene->obstacles.shape == OBSTACLE_POSTS) PetscCall(ObstaclesMakePosts(scene, &o));
-  if (scene->obstacles.shape == OBSTACLE_COUETTE) PetscCall(ObstaclesMakeCouette(scene, &o));
-  if (scene->obstacles.shape == OBSTACLE_CONSTRICTION) PetscCall(ObstaclesMakeConstriction(scene, &o));
-  if (scene->obstacles.shape == OBSTACLE_FILE) PetscCall(ObstaclesMakeFromFile(scene, &o));
+  if (scene->obstacles.shape == OBSTACLE_NONE) {
+    scene->obstacles.moving = PETSC_FALSE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(make[scene->obstacles.shape](scene, &o));
   for (PetscInt k = 0; k < o.count; k++) {
     Outline *one = &o.of[k];
     one->wall = -1;
@@ -315,8 +314,7 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.of[k].curve));
   PetscCall(PetscFree(o.of));
   PetscCall(SceneChooseFreeBodies(scene));
-  PetscCall(SceneCheckObstacles(scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(SceneCheckObstacles(scene));
 }
 
 PetscErrorCode SceneDropObstacles(Draft scene) {

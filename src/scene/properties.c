@@ -1,15 +1,5 @@
 #include "scene/properties.h"
 
-PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component) {
-  return list->v[list->n > each ? each * entry + component : component];
-}
-
-PetscReal ListLargest(const RealList *list) {
-  PetscReal largest = 0;
-  for (PetscInt k = 0; k < list->n; k++) largest = PetscMax(largest, list->v[k]);
-  return largest;
-}
-
 PetscInt SceneKindOf(Scene scene, PetscInt v) {
   return scene->vesicles.kind ? scene->vesicles.kind[v] : v;
 }

@@ -3,11 +3,8 @@
 #include "curve/contacts.h"
 #include "scene/spec.h"
 
-/* ListEntry - number `component` of entry `entry` of a list with `each` numbers an entry, or the same for all.
-   ListLargest - the largest of its numbers, at least 0. SceneKindOf - the entry of the options' lists that a vesicle
-   takes: its own number, or with -vesicle_mixture that of its kind. Not collective. */
-PETSC_EXTERN PetscReal ListEntry(const RealList *list, PetscInt each, PetscInt entry, PetscInt component);
-PETSC_EXTERN PetscReal ListLargest(const RealList *list);
+/* SceneKindOf - the entry of the options' lists that a vesicle takes: its own number, or with -vesicle_mixture that of
+   its kind. Not collective. */
 PETSC_EXTERN PetscInt SceneKindOf(Scene scene, PetscInt vesicle);
 
 #define SCENE_FILM 0.6 /* marker spacings: the thickness of a thinner film is off by 1 %, now or as it thins */

@@ -1,7 +1,6 @@
 #include "scene/space.h"
 #include "scene/auto.h"
 #include "scene/checks.h"
-#include "scene/flow3.h"
 #include "scene/properties.h"
 
 #define CAPSULE_MOST 0.97 /* reduced volume: below the largest that the family of capsules has, 0.9765 */

@@ -79,9 +79,8 @@ static PetscErrorCode SurfaceOfPoints(Scene s, PetscInt v, Sphere sphere, PetscI
   PetscCall(SCENE_REFUSE_IF(s, n < sphere->count,
     "-vesicle_file {-vesicle_file}: surface %.0f has %.0f points; allowed: %.0f or more, one a harmonic of -sphere_degree {-sphere_degree}", {v + 1, n, sphere->count}));
   PetscCall(ShapeFit(sphere, n, x, X, &spread, off));
-  PetscCall(SCENE_REFUSE_IF(s, spread < SPREAD,
+  PetscFunctionReturn(SCENE_REFUSE_IF(s, spread < SPREAD,
     "-vesicle_file {-vesicle_file}: the points of surface %.0f leave parts of it open; allowed: points on all sides, or a lower -sphere_degree than {-sphere_degree}", {v + 1}));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* That the coefficients X[3][count] are those of a body of revolution. */
@@ -98,9 +97,8 @@ static PetscErrorCode SurfaceCheckRevolved(Scene s, PetscInt v, PetscReal R0, co
   const PetscBool outward = (PetscBool)(c[s->space.degree + 1] > 0); /* the distance from the axis is positive */
   PetscCall(PetscFree2(c, again));
   PetscCall(SphereDestroy(&revolved));
-  PetscCall(SCENE_REFUSE_IF(s, !(off <= REVOLVED * R0) || !outward,
+  PetscFunctionReturn(SCENE_REFUSE_IF(s, !(off <= REVOLVED * R0) || !outward,
     "-vesicle_file {-vesicle_file}: surface %.0f is no body of revolution about x; allowed with -dim axisymmetric: coefficients c_x of m = 0 and equal ones c_y of m = 1, c_z of m = -1, those of l = 1 positive", {v + 1}));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Coefficients and radius of surface v of a file: where the file has it, of its size unless -vesicle_radius is given,

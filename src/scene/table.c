@@ -47,14 +47,6 @@ static PetscBool HasRepulsion(const void *scene) {
   return (HasVesicles(scene) || HasFreeBodies(scene)) && ((Scene)scene)->repulsion.stress > 0;
 }
 
-static PetscBool HasAdhesion(const void *scene) {
-  return ((Scene)scene)->repulsion.adhesion > 0;
-}
-
-static PetscBool HasPotential(const void *scene) {
-  return ((Scene)scene)->potential.strength > 0;
-}
-
 static PetscBool HasSolidCenters(const void *scene) {
   const SceneObstacles *own = &((Scene)scene)->obstacles;
   const PetscBool placed = own->posts.count || (own->posts.lattice.n && own->posts.lattice.v[0]);
@@ -83,14 +75,6 @@ static PetscBool HasWeight(const void *scene) {
   return none || (HasVesicles(scene) && SceneHasGravity((Scene)scene));
 }
 
-static PetscBool HasTube(const void *scene) {
-  return ((Scene)scene)->space.tube.radius > 0;
-}
-
-static PetscBool HasThroat(const void *scene) {
-  return ((Scene)scene)->space.tube.throat > 0;
-}
-
 static PetscBool IsChannel(const void *scene) {
   const PetscInt *bc = ((Scene)scene)->fluid.bc;
   return bc[0] == BC_PERIODIC && bc[1] == BC_WALL;
@@ -117,8 +101,8 @@ static const OptionNeed
   need_angles = {"vesicles that are not packed at random (-vesicle_packing)", .met = HasAngles},
   need_coupled = {"vesicles and -scheme_type coupled", .met = IsCoupled},
   need_repulsion = {"-contact_repulsion", .met = HasRepulsion},
-  need_adhesion = {"-contact_adhesion", .met = HasAdhesion},
-  need_potential = {"-contact_potential", .met = HasPotential},
+  need_adhesion = {"-contact_adhesion", .positive = AT(repulsion.adhesion)},
+  need_potential = {"-contact_potential", .positive = AT(potential.strength)},
   need_penalty = {"vesicles and -scheme_type penalty", .met = HasSprings},
   need_order = {"-scheme_order 2 or 3", AT(scheme.order), IS(2) | IS(3)},
   need_adapt = {"-time_adapt error", AT(time.adapt), IS(ADAPT_ERROR)},
@@ -137,8 +121,8 @@ static const OptionNeed
   need_heavy = {"vesicles and -scheme_type coupled, or -obstacle_free", .met = HasHeavy},
   need_space = {"-dim 3", AT(dim), IS(DIM_SPACE) | IS(DIM_AXIAL)},
   need_axial = {"-dim axisymmetric", AT(dim), IS(DIM_AXIAL)},
-  need_tube = {"-tube_radius", .met = HasTube},
-  need_throat = {"-tube_throat", .met = HasThroat},
+  need_tube = {"-tube_radius", .positive = AT(space.tube.radius)},
+  need_throat = {"-tube_throat", .positive = AT(space.tube.throat)},
   need_obstacle_file = {"-obstacle_shape file", AT(obstacles.shape), IS(OBSTACLE_FILE)};
 
 /* A restart may have another value than its checkpoint: end, tolerances, output, limits and back ends may change; grid,
@@ -297,9 +281,8 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;
   scene->options.missing = SceneSpaceMissing;
-  PetscCall(OptionsRead(comm, "petves: vesicles and capsules in viscous flow", TABLE_SIZE, table, scene_defaults,
-                        &scene->options, scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(OptionsRead(comm, "petves: vesicles and capsules in viscous flow", TABLE_SIZE, table,
+                                  scene_defaults, &scene->options, scene));
 }
 
 const OptionRow *SceneOptionRow(PetscInt i) {
@@ -325,6 +308,5 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
     skip[skipped++] = "-vesicle_radius";
     skip[skipped++] = "-vesicle_reduced_volume";
   }
-  PetscCall(OptionsWrite(&scene->options, scene, skip, file));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(OptionsWrite(&scene->options, scene, skip, file));
 }

@@ -73,7 +73,7 @@ static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscBool s
      "-vesicle_markers %g: markers %g h apart with -delta_type {-delta_type}; allowed: at least %g h (-vesicle_allow_close_markers goes on)", {own->markers, apart, least}},
     {close && own->spacing > 0,
      "-vesicle_spacing %g: markers %g h apart with -delta_type {-delta_type}; allowed: at least %g h (-vesicle_allow_close_markers goes on)", {spacing, apart, least}}};
-  return REFUSE(scene, few);
+  PetscFunctionReturn(REFUSE(scene, few));
 }
 /* clang-format on */
 
@@ -102,10 +102,12 @@ static PetscErrorCode KindFitRest(Scene scene, PetscBool spectral, Kind *kind) {
   if (strcmp(file, "circle"))
     PetscCall(CurvesFromFile(scene->comm, "-membrane_rest", file, NULL, &curves, &curve, NULL));
   const PetscReal length = CurveLength(curve);
-  PetvesCheck(curves == 1, scene->comm, "-membrane_rest %s: %" PetscInt_FMT " curves; allowed: one", file, curves);
-  PetvesCheck(kind->material.modulus > 0 || PetscAbsReal(length / kind->length - 1) < SAME_LENGTH, scene->comm,
-              "-membrane_rest %s: the curve is %g long, a membrane that does not stretch %g; allowed: the same length",
-              file, (double)length, (double)kind->length);
+  const SceneRule rules[] = {{curves != 1, "-membrane_rest {-membrane_rest}: %.0f curves; allowed: one", {curves}},
+                             {kind->material.modulus <= 0 && PetscAbsReal(length / kind->length - 1) >= SAME_LENGTH,
+                              "-membrane_rest {-membrane_rest}: the curve is %g long, a membrane that does not stretch "
+                              "%g; allowed: the same length",
+                              {length, kind->length}}};
+  PetscCall(REFUSE(scene, rules));
   PetscCall(KindFitCurve(curve, length, CurveArea(curve), spectral, kind->M, &kind->rest));
   if (curve == &circle) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CurveDestroy(curve));
@@ -118,8 +120,7 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionBeginUser;
   PetscCall(KindMarkerCount(scene, kind, spectral, &kind->M));
   PetscCall(KindFitCurve(&kind->curve, kind->length, kind->area, spectral, kind->M, &kind->X));
-  PetscCall(KindFitRest(scene, spectral, kind));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(KindFitRest(scene, spectral, kind));
 }
 
 /* The membrane by entry k of the lists. */
@@ -309,8 +310,7 @@ PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
     stretching = PetscMax(stretching, kind->material.modulus);
     scene->shape.longest = PetscMax(scene->shape.longest, kind->length);
   }
-  PetscCall(FlowChoose(scene, stretching));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(FlowChoose(scene, stretching));
 }
 
 PetscErrorCode KindsDestroy(Kinds *all) {

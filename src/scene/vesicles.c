@@ -119,7 +119,7 @@ static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
      "-domain_box: vesicle %.0f crosses itself or its periodic image; allowed: curves that do not, in a box that holds them", {pair[0] + 1}},
     {pair[0] >= 0,
      "-vesicle_center: vesicles %.0f and %.0f overlap; allowed: vesicles apart from one another", {pair[0] + 1, pair[1] + 1}}};
-  return REFUSE(scene, rules);
+  PetscFunctionReturn(REFUSE(scene, rules));
 }
 /* clang-format on */
 
@@ -165,8 +165,7 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
-  PetscCall(VesiclesCheckOverlap(scene, shape));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(VesiclesCheckOverlap(scene, shape));
 }
 
 PetscErrorCode SceneDropShape(Draft scene) {

@@ -17,6 +17,35 @@ static PetscErrorCode ViewRows(Scene scene, PetscViewer v, size_t rows, const Sc
 }
 #define VIEW(scene, viewer, rows) ViewRows(scene, viewer, sizeof(rows) / sizeof((rows)[0]), rows)
 
+static const char *ViewNearField(Scene scene) {
+  if (scene->coupling.near_field == NEAR_NONE) return "none";
+  if (SceneHasBoxPart(scene)) return "exact with box part";
+  return scene->coupling.box_part ? "exact without box part (a period is longer than 4 times the other side)" : "exact";
+}
+
+#define FEW 8 /* vesicles that get a line each */
+
+/* Area of the polygons of all markers. */
+static PetscReal ShapePolygonArea(const Shape *s) {
+  PetscReal area = 0;
+  for (PetscInt v = 0; v < s->vesicles; v++)
+    for (PetscInt k = s->start[v], p = s->start[v + 1] - 1; k < s->start[v + 1]; p = k++)
+      area += 0.5 * (s->X[2 * p] * s->X[2 * k + 1] - s->X[2 * k] * s->X[2 * p + 1]);
+  return area;
+}
+
+/* The defaults that depend on the scene, where one is in force. */
+static PetscErrorCode ViewDefaults(Scene scene, PetscViewer v) {
+  char value[OPTION_MAX_NAME];
+  PetscFunctionBeginUser;
+  for (const OptionDefault *d = scene_defaults; d->name; d++) {
+    const OptionRow *row = &scene->options.row[OptionFind(&scene->options, d->name)];
+    if (!OptionMissing(&scene->options, row, scene) && OptionDepends(&scene->options, scene, d, value))
+      PetscCall(PetscViewerASCIIPrintf(v, "default of this scene: %s %s, %s\n", d->name, value, d->why));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* clang-format off */
 static PetscErrorCode ViewFluid(Scene s, PetscViewer v) {
   const FluidSpec *f = &s->fluid;
@@ -57,26 +86,6 @@ static PetscErrorCode ViewFlow(Scene s, PetscViewer v) {
     {!channel && !strain && flow->type != FLOW_FORMULA, "background flow: {-flow_type}"}};
   return VIEW(s, v, rows);
 }
-/* clang-format on */
-
-static const char *ViewNearField(Scene scene) {
-  if (scene->coupling.near_field == NEAR_NONE) return "none";
-  if (SceneHasBoxPart(scene)) return "exact with box part";
-  return scene->coupling.box_part ? "exact without box part (a period is longer than 4 times the other side)" : "exact";
-}
-
-#define FEW 8 /* vesicles that get a line each */
-
-/* Area of the polygons of all markers. */
-static PetscReal ShapePolygonArea(const Shape *s) {
-  PetscReal area = 0;
-  for (PetscInt v = 0; v < s->vesicles; v++)
-    for (PetscInt k = s->start[v], p = s->start[v + 1] - 1; k < s->start[v + 1]; p = k++)
-      area += 0.5 * (s->X[2 * p] * s->X[2 * k + 1] - s->X[2 * k] * s->X[2 * p + 1]);
-  return area;
-}
-
-/* clang-format off */
 static PetscErrorCode ViewVesicles(Scene s, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   const PetscInt n = s->shape.vesicles, *start = s->shape.start;
@@ -100,19 +109,7 @@ static PetscErrorCode ViewVesicles(Scene s, PetscViewer v) {
     {n && hard > 0 && soft >= hard, "bending: on, c_b = %g", {soft}},
     {n && hard > 0 && soft < hard, "bending: on, c_b = %g to %g", {soft, hard}},
     {n, "membrane: kernel {-delta_type}, %s, near field %s, area target %s", .word = {derivatives[s->membrane.derivative], ViewNearField(s), SceneHasAreaTarget(s) ? "on" : "off"}}};
-  return VIEW(s, v, rows);
-}
-
-/* The defaults that depend on the scene, where one is in force. */
-static PetscErrorCode ViewDefaults(Scene scene, PetscViewer v) {
-  char value[OPTION_MAX_NAME];
-  PetscFunctionBeginUser;
-  for (const OptionDefault *d = scene_defaults; d->name; d++) {
-    const OptionRow *row = &scene->options.row[OptionFind(&scene->options, d->name)];
-    if (!OptionMissing(&scene->options, row, scene) && OptionDepends(&scene->options, scene, d, value))
-      PetscCall(PetscViewerASCIIPrintf(v, "default of this scene: %s %s, %s\n", d->name, value, d->why));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(VIEW(s, v, rows));
 }
 
 static PetscErrorCode ViewPlane(Scene s, PetscViewer v) {
@@ -131,7 +128,7 @@ static PetscErrorCode ViewPlane(Scene s, PetscViewer v) {
   PetscCall(ViewFlow(s, v));
   PetscCall(ViewVesicles(s, v));
   PetscCall(VIEW(s, v, scheme));
-  return ViewDefaults(s, v);
+  PetscFunctionReturn(ViewDefaults(s, v));
 }
 
 static PetscErrorCode ViewSpace(Scene s, PetscViewer v) {
@@ -145,18 +142,6 @@ static PetscErrorCode ViewSpace(Scene s, PetscViewer v) {
     {1, "scheme: order {-scheme_order}, dt = {-time_step} to t = {-time_end}, labels at the rate {-sphere_label_rate}"}};
   return VIEW(s, v, rows);
 }
-/* clang-format on */
-
-PetscErrorCode SceneView(Scene scene, PetscViewer v) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
-  PetscCall(PetscViewerASCIIPushTab(v));
-  PetscCall(scene->dim == DIM_PLANE ? ViewPlane(scene, v) : ViewSpace(scene, v));
-  PetscCall(PetscViewerASCIIPopTab(v));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* clang-format off */
 PetscErrorCode SceneSayModel(Scene s) {
   char model[SCENE_MODEL] = "", text[PETVES_MAX_MESSAGE];
   const char *const steps = s->time.adapt == ADAPT_NONE ? "fixed steps of" : "adaptive steps from";
@@ -174,3 +159,12 @@ PetscErrorCode SceneSayModel(Scene s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */
+
+PetscErrorCode SceneView(Scene scene, PetscViewer v) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(v, "Model in force\n"));
+  PetscCall(PetscViewerASCIIPushTab(v));
+  PetscCall(scene->dim == DIM_PLANE ? ViewPlane(scene, v) : ViewSpace(scene, v));
+  PetscCall(PetscViewerASCIIPopTab(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,6 +1,5 @@
 #include "space/fromscene.h"
 #include "scene/auto.h"
-#include "scene/flow3.h"
 
 #define ON_THROAT 24 /* spaces of the throat's rings that its radius has at least */
 #define ON_DEPTH 4   /* and its depth */
