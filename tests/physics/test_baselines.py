@@ -38,7 +38,6 @@ def test_penalty_tends_to_the_unsplit_scheme_with_the_step(unsplit, tmp_path):
     steps = (32, 64, 128, 256)
     error = [np.abs(markers(tmp_path / f"{n}", f"-scheme_type penalty -time_step {END / n}") - unsplit) for n in steps]
     error = np.array([e.max() for e in error])
-    print(f"penalty against coupled, dt = END/{steps}: {error}")
     assert (error[:-1] / error[1:] > 1.9).all()
     assert error[-1] < 1e-3 * H
 
@@ -48,7 +47,6 @@ def test_penalty_tends_to_the_unsplit_scheme_with_the_springs(unsplit, tmp_path)
     stiffness = (100, 400, 1600)
     options = f"-scheme_type penalty -time_step {END / 1024} -penalty_stiffness"
     error = [np.abs(markers(tmp_path / f"{k}", f"{options} {k}") - unsplit).max() for k in stiffness]
-    print(f"penalty against coupled, sigma_0 = {stiffness}: {error}")
     assert error[0] > 2.5 * error[1] > 2.5**2 * error[2]
 
 

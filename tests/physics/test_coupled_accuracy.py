@@ -54,7 +54,6 @@ def text(numbers) -> str:
 def test_error_in_time_is_the_prototypes(order, errors):
     """Within 10 % (order 1) and 15 % (order 2, first step backward Euler)."""
     got = errors(f"-scheme_order {order}" + (" -scheme_startup euler" if order > 1 else ""))
-    print(f"order {order}: {text(got)}")
     np.testing.assert_allclose(got, PROTOTYPE[order], rtol=0.10 if order == 1 else 0.15)
 
 
@@ -63,7 +62,6 @@ def test_second_order_is_second_order(start, errors):
     """Observed order at least 1.9 between every two steps; the graded start is nowhere worse than backward Euler's."""
     got, euler = (errors(f"-scheme_order 2 -scheme_startup {s}") for s in (start, "euler"))
     orders = -np.diff(np.log2(got))
-    print(f"{start}: {text(got)}, orders {text(orders)}")
     assert orders.min() >= 1.9
     assert all(a <= b * (1 + 1e-9) for a, b in zip(got, euler))
 
@@ -78,7 +76,6 @@ def controlled(cached_run, reference, order: int) -> np.ndarray:
         assert abs(series["time"][-1] - 0.25) < 1e-15
         np.testing.assert_allclose(np.cumsum(series["dt"][1:]), series["time"][1:], rtol=1e-12)
         got.append(rms(markers(run), reference))
-        print(f"tolerance {tolerance:.2e}: error {got[-1]:.2e} in {len(series['dt']) - 1} steps")
     return np.array(got)
 
 
@@ -112,7 +109,6 @@ def test_markers_move_at_most_so_many_cells(tmp_path):
     free = largest(0)
     for move in (1, 0.25):
         held = largest(move)
-        print(f"largest movement {free:.2f} cells without the limit, {held:.2f} with {move}")
         assert held <= move < free
 
 
@@ -125,7 +121,6 @@ def test_membranes_keep_their_edges_relaxing(cached_run):
         series = cached_run(options).series
         length = np.abs(series["length_error"])
         peak[start] = length.max()
-        print(f"{start}: peak {length.max():.1e}, edge ratio {series['edge_ratio'].max():.5f}; end {length[-1]:.1e}")
         assert length[-1] < 1e-8 and series["edge_ratio"][-1] < 1.001
     assert peak["graded"] < 0.25 * peak["euler"] and peak["euler"] < 5e-4
 
@@ -141,7 +136,6 @@ def test_membranes_keep_their_edges_tank_treading(cached_run):
         series = cached_run(options).series
         length, edges = np.abs(series["length_error"]), series["edge_ratio"]
         peak[start] = length.max(), edges.max() - 1
-        print(f"{start}: peak {length.max():.1e}, {edges.max():.5f}; end {length[-1]:.1e}, {edges[-1]:.6f}")
     assert series["time"][-1] == pytest.approx(10) and length[-1] < 1e-5 and edges[-1] < 1.001
     assert np.median(series["nsolve"][-20:]) <= 15, "steady: the extrapolated guess leaves little to do"
     assert peak["euler"][0] < 5e-4 and peak["euler"][1] < 0.004
@@ -170,7 +164,6 @@ def test_iterations_are_few(cells, box, cached_run):
     bc, bound = WALLS[box]
     for dt, bending in ((2 / cells, 0.01), (0.25, 1)):
         its = cold_iterations(cached_run, f"-domain_cells {cells},{cells} {bc} -vesicle_spacing 1.75", dt, bending)
-        print(f"{box}, {cells}^2, dt = {dt:g}, c_b = {bending:g}: {its.astype(int)}")
         assert its.min() >= 1 and its[:2].max() <= bound
         assert its.max() <= 6 + bound and its.mean() <= 3 + bound
 
@@ -187,5 +180,4 @@ def test_second_vesicle_costs_few_iterations(box, distance, dt, bending, cached_
     scene = f"-domain_box -1.5,1.5,-1,1 -domain_cells 96,64 {WALLS[box][0]} -vesicle_semi_axes 0.2,0.4"
     one = cold_iterations(cached_run, f"{scene} -vesicle_center -0.3,0", dt, bending, 2)
     two = cold_iterations(cached_run, f"{scene} -vesicle_count 2 -vesicle_center {-x},0,{x},0", dt, bending, 2)
-    print(f"{box}, {distance} 2 R0, dt = {dt:g}, c_b = {bending:g}: {one} and {two}")
     assert (two - one).max() <= 2

@@ -41,6 +41,5 @@ def test_the_first_state_is_what_a_short_step_leads_to(kind, runs):
     for name in saved.keys() & set(names):
         first, second = saved[name]
         apart[name] = np.abs(second - first).max() / np.abs(second).max()
-    print({name: f"{value:.1e}" for name, value in apart.items()})
     assert np.nanmax(list(apart.values())) < 5e-5 and not np.isnan([apart["fluid/p"], apart["vesicle/tension"]]).any()
     assert run.series["coupled_its"][0] > 0

@@ -66,12 +66,6 @@ def rows(folder):
     return frames(folder, "vesicles.h5")
 
 
-def same_rows(ours, theirs, first=0):
-    assert ours.keys() == theirs.keys()
-    for name in theirs:
-        np.testing.assert_array_equal(ours[name], theirs[name][first:], err_msg=name)
-
-
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """A run of 42 vesicles."""
@@ -160,7 +154,7 @@ def test_restart_goes_on_with_the_rows(whole, tmp_path):
     first = run_petves(tmp_path / "a", f"{MANY} -time_end .05").folder
     checkpoint = f"-restart {first}/checkpoint.h5 -time_end .08"
     new = run_petves(tmp_path / "b", f"{MANY} {checkpoint}")
-    same_rows(rows(new.folder), rows(whole), 5)
+    same_columns(rows(new.folder), {name: values[5:] for name, values in rows(whole).items()})
     bytes_before = (first / "vesicles.h5").read_bytes()
     with h5py.File(first / "vesicles.h5", "r+") as file:
         for name in file:

@@ -27,7 +27,6 @@ def test_steady_shape_does_not_depend_on_the_step(reduced_area, chi, dt, tmp_pat
     angle, frequency = SHEAR_FREE[reduced_area, chi]
     series = run_petves(tmp_path, options).series
     errors = series["inclination"][-1] / np.pi / angle - 1, series["frequency"][-1] / frequency - 1
-    print(errors)
     assert np.abs(errors).max() < 3e-6  # the reference has seven digits
 
 
@@ -52,7 +51,6 @@ def test_orders(tmp_path):
     exact, steps = markers(3, 0.0025), (0.1, 0.05, 0.025)
     errors = {order: [np.abs(markers(order, dt) - exact).max() for dt in steps] for order in (2, 3)}
     slopes = {order: np.polyfit(np.log(steps), np.log(errors[order]), 1)[0] for order in (2, 3)}
-    print(errors, slopes)
     assert slopes[2] > 1.8 and slopes[3] > 2.6
     assert errors[3][0] < 0.5 * errors[2][0] and errors[3][2] < 0.2 * errors[2][2]
 

@@ -85,12 +85,8 @@ def test_wrinkles_that_markers_do_not_resolve(tmp_path):
 
 def test_markers_that_do_not_resolve_one_shape_of_two(tmp_path):
     """Warned of once, on any number of ranks; as many as the warning says are enough."""
-    scene = (
-        f"{FREE} -domain_box 0,8,0,8 -flow_type shear -vesicle_center 2.5,4,5.5,4 -vesicle_count 2 -vesicle_area 1,1"
-    )
-    scene += (
-        " -vesicle_reduced_area 0.95,0.7 -vesicle_allow_close_markers -time_step 0.05 -time_end 0.3 -vesicle_markers"
-    )
+    scene = f"{FREE} -domain_box 0,8,0,8 -flow_type shear -vesicle_center 2.5,4,5.5,4 -vesicle_count 2 -vesicle_area 1"
+    scene += " -vesicle_reduced_area .95,.7 -vesicle_allow_close_markers -time_step .05 -time_end .3 -vesicle_markers"
     (line,) = warnings(tmp_path / "run", f"{scene} 17", 2)
     assert "17 markers do not resolve vesicle 2 after step 1," in line
     wanted = line.split("try -vesicle_markers ")[1]

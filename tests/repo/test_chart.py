@@ -111,6 +111,7 @@ def test_a_handful_of_points(tmp_path, monkeypatch):
     assert float(found[2]["error"]) == pytest.approx(float(found[1]["error"]), rel=0.01)  # solves to 1e-12
 
     monkeypatch.setattr("studies.common.engine.run_program", lambda *words: pytest.fail("run again"))
+    monkeypatch.setattr(report, "picture", lambda *words: tmp_path)  # drawn once
     kept = (tmp_path / "chart.csv").read_text()
     report.write(tmp_path, scenes=(scene,), finest=32)
     assert (tmp_path / "chart.csv").read_text() == kept

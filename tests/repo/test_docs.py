@@ -77,9 +77,6 @@ def test_every_page_is_in_the_list_and_in_the_site():
     pages = {page.name for page in ROOT.glob("docs/*.md")}
     assert pages - {"pages.md"} == set(re.findall(r"\((\w+\.md)\)", listed)), "docs/pages.md"
     assert pages == set(re.findall(r" ([a-z]\w+\.md)$", site, re.MULTILINE)) - {"index.md"}, "mkdocs.yml"
-
-
-def test_readme_is_short():
     assert len((ROOT / "README.md").read_text().splitlines()) <= 200
 
 
