@@ -56,19 +56,16 @@ def test_fast_solve_without_vesicle(tmp_path):
 
 #: A LAPACK whose factorisations fail from the FAIL-th call on, and an MPI whose FAIL_MPI-th sum does.
 FAILING = r"""
-#define _GNU_SOURCE
-#include <dlfcn.h>
 #include <mpi.h>
 #include <stdlib.h>
 int MPI_Allreduce(const void *a, void *b, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
   static int calls;
   if (getenv("FAIL_MPI") && ++calls == atoi(getenv("FAIL_MPI"))) return MPI_ERR_OTHER;
-  return ((int (*)(const void *, void *, int, MPI_Datatype, MPI_Op, MPI_Comm))dlsym(RTLD_NEXT, "MPI_Allreduce"))(
-      a, b, n, type, op, comm);
+  return REAL(MPI_Allreduce)(a, b, n, type, op, comm);
 }
 static int fails(void) { static int calls; return getenv("FAIL") && ++calls >= atoi(getenv("FAIL")); }
 void dgetrf_(int *m, int *n, double *A, int *lda, int *pivot, int *info) {
-  ((void (*)(int *, int *, double *, int *, int *, int *))dlsym(RTLD_NEXT, "dgetrf_"))(m, n, A, lda, pivot, info);
+  REAL(dgetrf_)(m, n, A, lda, pivot, info);
   if (fails()) *info = 7;
 }
 """

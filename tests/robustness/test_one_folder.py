@@ -181,8 +181,6 @@ def test_folder_becomes_read_only(tmp_path_factory, monkeypatch):
 
 #: From the second second on the time of day is an hour earlier.
 CLOCK = r"""
-#define _GNU_SOURCE
-#include <dlfcn.h>
 #include <sys/time.h>
 #include <time.h>
 
@@ -193,15 +191,13 @@ static time_t back(time_t now) {
 }
 
 int gettimeofday(struct timeval *now, void *zone) {
-  int (*real)(struct timeval *, void *) = (int (*)(struct timeval *, void *))dlsym(RTLD_NEXT, "gettimeofday");
-  const int error = real(now, zone);
+  const int error = REAL(gettimeofday)(now, zone);
   now->tv_sec = back(now->tv_sec);
   return error;
 }
 
 int clock_gettime(clockid_t clock, struct timespec *now) {
-  int (*real)(clockid_t, struct timespec *) = (int (*)(clockid_t, struct timespec *))dlsym(RTLD_NEXT, "clock_gettime");
-  const int error = real(clock, now);
+  const int error = REAL(clock_gettime)(clock, now);
   if (clock == CLOCK_REALTIME) now->tv_sec = back(now->tv_sec);
   return error;
 }

@@ -90,11 +90,18 @@ def simulation(options: str, **more) -> str:
     return f"petves.Simulation({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
 
+#: A library's own function calls the one of the same name that it stands for.
+REAL = """#define _GNU_SOURCE
+#include <dlfcn.h>
+#define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
+"""
+
+
 def preloaded(folder: Path, source: str, compiler: str = "gcc") -> str:
     """Compile a library that a program is to load first (LD_PRELOAD); the sanitizers want to be that themselves."""
     if SANITIZE:
         pytest.skip("the sanitizers' library must be the first to be loaded")
-    (folder / "first.c").write_text(source)
+    (folder / "first.c").write_text(REAL + source)
     command = [compiler, "-O1", "-shared", "-fPIC", "-o", folder / "first.so", folder / "first.c", "-ldl"]
     subprocess.run(command, env={**os.environ, **ENVIRONMENT}, check=True)
     return str(folder / "first.so")
