@@ -39,7 +39,6 @@ def steady_errors(cached_run, n: int, reduced_area: float, chi: float, more: str
     markers = f"{more} -vesicle_markers 45 -vesicle_allow_close_markers"
     found = tank_treading(cached_run, "box", n, reduced_area, chi, markers)[1]
     errors = np.array(found) / BOX[reduced_area, chi] - 1
-    print(f"{n}^2, V = {reduced_area}, chi = {chi}: angle {errors[0]:+.4%}, frequency {errors[1]:+.4%}")
     return errors
 
 
@@ -64,7 +63,6 @@ def test_coarse_grid_finds_the_steady_state(box, reduced_area, chi, cached_run):
     """64^2, markers at the default spacing, rate dt = 0.05; measured 0.045 percent or less."""
     _, found = tank_treading(cached_run, box, 64, reduced_area, chi)
     angle, frequency = np.array(found) / SHEAR[box][reduced_area, chi] - 1
-    print(f"{box}, V = {reduced_area}, chi = {chi}: angle {angle:+.3%}, frequency {frequency:+.3%}")
     assert abs(angle) < 0.001 and abs(frequency) < 0.001
 
 
@@ -75,7 +73,6 @@ def test_area_and_length_are_kept(n, length, cached_run):
     later = series["time"] > 1 - 1e-9
     worst = {name: np.abs(series[name][later]).max() for name in ("area_error", "length_error", "area_shift")}
     shift = worst["area_shift"] / math.sqrt(1 / (0.7 * math.pi))
-    print(f"{n}^2: {worst}, shift {shift:.1e} R0")
     assert worst["area_error"] < 1e-10 and worst["length_error"] < length
     assert 0 < shift < 1e-4
 
@@ -95,11 +92,9 @@ def test_relaxation_reaches_its_fine_grid_limit(cached_run):
     error of their own, of second order in the markers: -9.5e-4 with 24, -2.3e-4 with 50, whatever the near field."""
     got = {n: relaxed(cached_run, n) for n in (16, 32, 64)}
     limit = REFERENCES["relaxation"]["half_width"]
-    print({n: f"{width:.6f} {width - limit:+.1e}" for n, width in got.items()})
     assert abs(got[16] - limit) < 1e-4 and abs(got[32] - limit) < 2e-5 and abs(got[64] - limit) < 2e-5
     close = "-membrane_derivative bending -vesicle_allow_close_markers -vesicle_markers"
     chords = [abs(relaxed(cached_run, 16, f"{close} {markers}") - limit) for markers in (24, 48)]
-    print(chords)
     assert chords[0] < 1.1e-3 and chords[1] < chords[0] / 3.5
 
 
@@ -123,7 +118,6 @@ def test_film_between_pressed_vesicles(cached_run):
         run = cached_run(f"{CORRECTED} {BOXES['box'].format(n=n)} {scene}")
         gaps.append([least_gap(Run.read(run.folder), frame) for frame in range(5)])
     coarse, fine = np.array(gaps)
-    print(coarse, coarse / fine - 1)
     np.testing.assert_allclose(coarse, fine, rtol=2e-3)
     rise = np.diff(1 / fine**2)
     assert (fine > 0).all() and 0.8 < rise[3] / rise[2] < 1.25
@@ -136,7 +130,6 @@ def test_film_between_soft_vesicles(chi, cached_run):
     scene = f"{PRESSED} -vesicle_bending {0.2345 / chi} -vesicle_markers 45 -time_step"
     long, short = (cached_run(f"{CORRECTED} {BOXES['box'].format(n=32)} {scene} {dt}") for dt in (0.1, 0.05))
     gaps = [run.series["gap"][-1] for run in (long, short)]
-    print(gaps)
     assert abs(gaps[0] / gaps[1] - 1) < 5e-3 and "has been corrected" not in long.stdout
     for name in ("area_error", "length_error"):
         assert abs(long.series[f"{name}_1"]).max() < 1e-12, name

@@ -259,9 +259,8 @@ def test_water_passes_without_near_field(tmp_path):
 def test_permeable_vesicles(tmp_path):
     """At rest they swell into circles, whose tension is 3/2 - 1/2 of c_b/R0^2 below zero; in shear V and angle settle."""
     scene = f"{ELLIPSE} -vesicle_bending 1"
-    run = run_petves(
-        tmp_path / "rest", f"{scene} -membrane_permeability 0.05 -time_step 0.1 -time_end 60 -coupled_ksp_rtol 1e-8"
-    )
+    rest = f"{scene} -membrane_permeability 0.05 -time_step 0.1 -time_end 60 -coupled_ksp_rtol 1e-8"
+    run = run_petves(tmp_path / "rest", rest)
     assert 4 * math.pi * run.series["area"][-1] / run.series["length"][-1] ** 2 == pytest.approx(1, abs=1e-9)
     assert run.saved("vesicle/tension") == pytest.approx(-1, abs=1e-6)
     for chi, (P, V, theta) in CAPSULES["permeable"].items():
@@ -318,10 +317,8 @@ def test_laws_of_kinds(tmp_path):
         options = f"-membrane_law {law} -membrane_stretching {modulus} -membrane_viscosity {viscosity}"
         centers = ",".join(f"{APART * k!r},0" for k in range(len(of)))
         many = f"-vesicle_count {len(of)} -vesicle_center {centers} -vesicle_angle 30 -flow_type shear"
-        return run_petves(
-            tmp_path / name,
-            f"{ELLIPSE} {many} {options} -coupled_ksp_rtol 1e-12 -scheme_order 2 -time_step 0.05 -time_end 1",
-        )
+        options += " -coupled_ksp_rtol 1e-12 -scheme_order 2 -time_step 0.05 -time_end 1"
+        return run_petves(tmp_path / name, f"{ELLIPSE} {many} {options}")
 
     both = run("all", [0, 1, 2, 3])
     stretching = 0.0

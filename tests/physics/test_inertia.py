@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from harness import run_petves
 from studies.common.paper import POISEUILLE, RELAXATION
+from studies.common.scenes import option_text
 from studies.inertia.runs import extents, moving_and_resting, poiseuille_options, relaxation_options
 from studies.speed_accuracy.scenes import Point, channel_options
 
@@ -15,15 +16,11 @@ CHANNEL = "-domain_box 0,2.5,-1,1 -domain_cells 60,48 -domain_bc_x periodic -flo
 CHANNEL += "-vesicle_semi_axes 0.3,0.45 -vesicle_center 1.25,0.1 -output_every 10"
 
 
-def words(options: dict[str, str]) -> str:
-    return " ".join(f"{name} {value}" for name, value in options.items())
-
-
 @pytest.mark.parametrize("box", ["periodic", "walls"])
 def test_relaxation_is_that_of_unbounded_stokes_flow(box, tmp_path):
     """Bending energy and extents within 0.3 % at every time of the targets, h = R0/6 in a 2 x 2 box."""
-    options = words(relaxation_options(1, 36, 0.01, box))
-    run = run_petves(tmp_path, f"{options}")
+    options = option_text(relaxation_options(1, 36, 0.01, box))
+    run = run_petves(tmp_path, options)
     found = extents(run.folder)
     for time, target in RELAXATION.items():
         np.testing.assert_allclose(found[time], target, rtol=3e-3, err_msg=f"t = {time}")
@@ -35,7 +32,7 @@ def test_relaxation_is_that_of_unbounded_stokes_flow(box, tmp_path):
 
 def test_migration_is_that_of_unbounded_stokes_flow(tmp_path):
     """Height of the centroid within 0.02 R0 while the vesicle migrates from R0 to 0.83 R0."""
-    run = run_petves(tmp_path, f"{words(poiseuille_options(28, 40, 6, 0.005, 1))}")
+    run = run_petves(tmp_path, option_text(poiseuille_options(28, 40, 6, 0.005, 1)))
     for time in (0.5, 1):
         height = np.interp(time, run.series["time"], run.series["center_y"])
         assert height == pytest.approx(POISEUILLE[time], abs=0.02)
@@ -48,7 +45,7 @@ def test_convection_is_galilean_invariant(tmp_path):
         for inertia in ("convective", "unsteady"):
             runs = []
             for name, options in moving_and_resting(n, inertia).items():
-                runs.append(run_petves(tmp_path / f"{n}_{inertia}_{name}", f"{words(options)}"))
+                runs.append(run_petves(tmp_path / f"{n}_{inertia}_{name}", option_text(options)))
             found[n, inertia] = relative_difference(*runs)
     shape, velocity = found[64, "convective"]
     assert found[32, "convective"][0] > 3 * shape, "second order in h"
@@ -64,7 +61,7 @@ def test_migration_in_unsteady_flow_does_not_depend_on_the_grid(kernel, off, tmp
     """
     rise = {16: 0.0924109, 24: 0.0928481}
     limit = (24**2 * rise[24] - 16**2 * rise[16]) / (24**2 - 16**2)
-    options = words(channel_options(Point("coupled 3, exact", 4, dt=0.06)))
+    options = option_text(channel_options(Point("coupled 3, exact", 4, dt=0.06)))
     run = run_petves(tmp_path, f"{options} -scheme_order 3 -delta_type {kernel}")
     assert run.series["center_y"][-1] - run.series["center_y"][0] == pytest.approx(limit, rel=off)
 
@@ -73,7 +70,7 @@ def test_migration_with_steps_below_the_lag(tmp_path):
     """h = 1/3, where a step is .64 of the lag: 5.2 % short; 8.5 % where markers took none of the grid's new velocity."""
     limit = 0.0931979
     options = channel_options(Point("coupled 3, exact", 3)) | {"-time_step": "0.03"}
-    run = run_petves(tmp_path, f"{words(options)} -scheme_order 3")
+    run = run_petves(tmp_path, f"{option_text(options)} -scheme_order 3")
     assert run.series["center_y"][-1] - run.series["center_y"][0] == pytest.approx(limit, rel=0.06)
 
 

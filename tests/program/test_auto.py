@@ -2,6 +2,7 @@
 
 import csv
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -265,9 +266,10 @@ def test_compressed_start_within_the_wanted_error(tmp_path):
 
 @pytest.mark.parametrize("number", (0, 5))
 def test_unseen_scenes_within_the_wanted_error(number, tmp_path):
-    """Two of the study's scenes, in unbounded fluid, where they take a second; docs/speed_accuracy/unseen.csv has all."""
-    results = Results(tmp_path / "unseen.json")
-    exact = results.get(unseen.fine(number))
+    """Two of the study's scenes, in unbounded fluid, against a run of ten times its tolerance, a hundredth of the smaller
+    error; docs/speed_accuracy/unseen.csv has all."""
+    results, fine = Results(tmp_path / "unseen.json"), unseen.fine(number)
+    exact = results.get(replace(fine, options=fine.options | words("-time_adapt_tol 3e-5")))
     for wanted in (1e-2, 1e-3):
         assert unseen.error(results.get(unseen.auto(number, wanted)), exact) < wanted
 
