@@ -23,15 +23,21 @@ def cached_run(tmp_path_factory):
     return lambda options, ranks=1: made(options, ranks)
 
 
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """The test's own folder, in which it runs."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
 #: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.
 LONG = "valgrind views runs docs newcomer programs output_faults restart accuracy tools one_folder damaged".split()
-LONG += "metamorphic studies fuzz pictures chart notebooks coupled_runs coupled_accuracy unlike_ranks forged stability".split()
+LONG += "metamorphic studies fuzz pictures chart coupled unlike_ranks forged stability".split()
 LONG += "python python_package interrupted free_bodies elastic obstacles contrast baselines".split()
 
 
 #: Ranks that wait sleep. One that yields waits for the whole turn of the other worker's process on its core.
 PATIENT = """
-#define _GNU_SOURCE
 #include <sched.h>
 #include <time.h>
 int sched_yield(void) { return nanosleep(&(struct timespec){0, 1000}, 0); }

@@ -151,11 +151,10 @@ def test_program_refuses_scene(options, ranks, message, tmp_path):
 @pytest.mark.parametrize(
     "group, options, ranks, message", [row for row in rows() if row[0] not in SCENES], ids=lambda value: str(value)[:40]
 )
-def test_mistake_is_named(group, options, ranks, message, tmp_path, monkeypatch):
+def test_mistake_is_named(group, options, ranks, message, here):
     """A row of tests/repo/messages, in a run: this line and no other; bad input before any step, a failed step with the last
     good state."""
-    monkeypatch.chdir(tmp_path)
-    run = run_petves(tmp_path / "out", with_files(options, tmp_path), ranks, good=False, timeout=60)
+    run = run_petves(here / "out", with_files(options, here), ranks, good=False, timeout=60)
     assert matches(f"petves: error: {message}", "\n".join(run.errors)), run.errors
     if group == "steps":
         leaves_files(run, "")
@@ -172,20 +171,18 @@ def test_there_are_rows_of_every_kind_and_the_page_shows_them():
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_no_option_prints_the_usage(ranks, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_no_option_prints_the_usage(ranks, here):
     done = mpirun([PETVES], ranks, PETSC_OPTIONS="")
-    assert done.returncode == 1 and "usage:" in done.stderr and done.stdout == "" and not list(tmp_path.iterdir())
+    assert done.returncode == 1 and "usage:" in done.stderr and done.stdout == "" and not list(here.iterdir())
     assert done.stderr.count("usage:") == 1 and "petves run shear" in done.stderr
 
 
-def test_stray_word_alone(tmp_path, monkeypatch):
+def test_stray_word_alone(here):
     """No file, scene or tool: the default scene is not run."""
-    monkeypatch.chdir(tmp_path)
     done = mpirun([PETVES, "my.opts"], 2)
     line = '"my.opts": no option, file, scene or command; allowed: -name value, or what petves help lists'
     assert done.returncode == 1 and without_mpirun(done.stderr) == [f"petves: error: {line}"]
-    assert not (tmp_path / "out").exists()
+    assert not (here / "out").exists()
 
 
 @pytest.mark.parametrize(
@@ -199,8 +196,7 @@ def test_stray_word_alone(tmp_path, monkeypatch):
         ("-log_view gmres", "-log_view gmres: no viewer"),
     ],
 )
-def test_environment_is_read_alike(typed, needle, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_environment_is_read_alike(typed, needle, here):
     done = mpirun([PETVES, *SMALL.split()], 2, PETSC_OPTIONS=typed)
     lines = without_mpirun(done.stderr)
     assert done.returncode == 1 and len(lines) == 1 and needle in lines[0], done.stderr
@@ -220,16 +216,15 @@ def test_only_the_users_own_words_start_programs_or_write_elsewhere(tmp_path, mo
     assert not {"-log_view", "-info", "-coupled_ksp_monitor"} & set(Path("out/run/resolved.opts").read_text().split())
 
 
-def test_command_line_wins_over_files_over_environment(tmp_path, monkeypatch):
+def test_command_line_wins_over_files_over_environment(here):
     """In whatever order they are given; a value in quotes may hold blanks and #."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "inner.opts").write_text("-vesicle_angle 3\n-output_dir 'out/a # b'  # a comment\n")
-    (tmp_path / "outer.opts").write_text("-options_file inner.opts\n-fluid_viscosity 2\n-vesicle_bending 0.02\n")
+    (here / "inner.opts").write_text("-vesicle_angle 3\n-output_dir 'out/a # b'  # a comment\n")
+    (here / "outer.opts").write_text("-options_file inner.opts\n-fluid_viscosity 2\n-vesicle_bending 0.02\n")
     words = "-time_end 0.01 -vesicle_bending 0.03 -options_file outer.opts -domain_cells 16,16".split()
     surroundings = "-fluid_viscosity 3 -time_end 9 -vesicle_angle 4 -time_step 0.01"
     done = mpirun([PETVES, *words], 1, PETSC_OPTIONS=surroundings)
     assert done.returncode == 0, done.stderr
-    read = (tmp_path / "out" / "a # b" / "resolved.opts").read_text().splitlines()
+    read = (here / "out" / "a # b" / "resolved.opts").read_text().splitlines()
     options = dict(line.split(maxsplit=1) for line in read if line.startswith("-"))
     wanted = dict(time_end=0.01, vesicle_bending=0.03, fluid_viscosity=2, vesicle_angle=3, time_step=0.01)
     assert {name: float(options[f"-{name}"]) for name in wanted} == wanted

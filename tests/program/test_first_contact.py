@@ -19,25 +19,16 @@ from make_manual import completion, manual  # noqa: E402
 SMALL = "-domain_cells 24,24 -vesicle_semi_axes 0.4,0.5 -time_step 0.01 -time_end 0.01".split()
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 @pytest.mark.parametrize("word, ranks", [("-help", 1), ("--help", 1), ("-h", 1), ("-help", 2)])
 def test_help_is_half_a_screen(word, ranks, here):
+    """It names scenes and pages that are there."""
     done = mpirun([PETVES, *SMALL, word], ranks, PETSC_OPTIONS="")
     assert done.returncode == 0 and not done.stderr and not list(here.iterdir())
     assert done.stdout.count("usage:") == 1 and "README.md" in done.stdout
     lines = done.stdout.splitlines()
     assert len(lines) <= 25 and max(map(len, lines)) <= 110
-
-
-def test_help_names_scenes_that_are_there():
-    text = mpirun([PETVES, "-help"], 1).stdout
-    named = re.findall(r"\b(?:runs|docs)/\w+\.\w+|README\.md", text)
-    named += [f"runs/{scene}.opts" for scene in re.findall(r"^  petves run (\w+)", text, re.MULTILINE)]
+    named = re.findall(r"\b(?:runs|docs)/\w+\.\w+|README\.md", done.stdout)
+    named += [f"runs/{scene}.opts" for scene in re.findall(r"^  petves run (\w+)", done.stdout, re.MULTILINE)]
     assert len(set(named)) >= 4 and all((ROOT / name).is_file() for name in named)
 
 
@@ -64,13 +55,8 @@ def test_help_of_a_word():
     assert max(map(len, text.splitlines())) <= 110 and "Also in the help of -" in text
 
 
-FOUND = {
-    "kappa": "-vesicle_bending",
-    "channel": "-flow_drive",
-    "Pressure": "-flow_drive",
-    "stenosis": "-obstacle_shape",
-}
-FOUND |= {"reynolds": "-fluid_inertia", "GPU": "no graphics processors"}
+FOUND = {"kappa": "-vesicle_bending", "channel": "-flow_drive", "Pressure": "-flow_drive"}
+FOUND |= {"stenosis": "-obstacle_shape", "reynolds": "-fluid_inertia", "GPU": "no graphics processors"}
 
 
 @pytest.mark.parametrize("word, found", FOUND.items())
@@ -122,12 +108,10 @@ def test_run_takes_a_file(here):
     assert mpirun([PETVES, "run"], 1, PETSC_OPTIONS="").returncode == 1
 
 
-@pytest.mark.parametrize(
-    "words, ranks", [(["run", "stirring"], 2), (["stirring"], 1), ([str(ROOT / "runs/stirring.opts")], 1)]
-)
+@pytest.mark.parametrize("words, ranks", [("run stirring", 2), ("stirring", 1), (f"{ROOT}/runs/stirring.opts", 1)])
 def test_scene_by_name_with_the_file_beside_it(words, ranks, here):
     """A scene that comes with petves runs from anywhere, with or without run; its curve lies beside it."""
-    done = mpirun([PETVES, *words, "-time_end", "0", "-output_dir", "out"], ranks)
+    done = mpirun([PETVES, *words.split(), "-time_end", "0", "-output_dir", "out"], ranks)
     assert done.returncode == 0, done.stderr
     (line,) = re.findall(r"^-obstacle_file (.*)", Path("out/resolved.opts").read_text(), re.MULTILINE)
     assert Path(line).resolve() == ROOT / "runs" / "stirring.txt"

@@ -1,12 +1,15 @@
-"""Every output file of a run is there, and they agree with one another."""
+"""Every output file of a run is there, and they agree with one another. resolved.opts repeats the run, whatever its folder and its
+files are called. How much a run writes: frames by default, their precision."""
 
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from harness import COLUMNS, PAPER, PETVES, run_petves
-from restarts import same_columns
+from harness import COLUMNS, PAPER, PETVES, mpirun, run_petves
+from refusals import refused
+from restarts import frames, same_columns, without_wall
 
 pytestmark = pytest.mark.xdist_group("output")  # its tests share runs
 
@@ -38,6 +41,8 @@ def test_folder_holds_every_file(run):
     names = {path.name for path in run.folder.iterdir()}
     files = "series.csv run.h5 run.xmf checkpoint.h5 checkpoint_1.h5 resolved.opts summary.json"
     assert names == set(files.split())
+    for text in ("100 %", f"step {STEPS}", f"finished at time 0.24 after {STEPS} steps", "files in"):
+        assert text in run.stdout
 
 
 def test_series_has_its_columns(run):
@@ -164,12 +169,6 @@ def test_resolved_options_repeat_the_run(run, tmp_path):
         assert name in names
 
 
-def test_progress_and_summary_are_printed(run):
-    assert "100 %" in run.stdout and f"step {STEPS}" in run.stdout
-    assert f"finished at time 0.24 after {STEPS} steps" in run.stdout
-    assert "files in" in run.stdout
-
-
 def test_steady_state_ends_the_run(tmp_path):
     options = "-domain_cells 32,32 -vesicle_semi_axes 0.4,0.4 -time_step 0.01 -time_steady_tol 0.1"
     run = run_petves(tmp_path / "out", options)
@@ -195,3 +194,83 @@ def test_no_memory_is_left(scheme, tmp_path):
         assert not [line for line in run.stdout.splitlines() if " bytes " in line]
         assert "never freed" not in run.stdout
         assert not run.errors
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["two words", "out/ü 'é' ", " before", "back\\slash%s$HOME", "it's", "pipe|;*?[1]~", "a,b=c", "a #b", "#", "'"],
+)
+def test_resolved_options_of_any_name(name, here):
+    """In a folder of any name that is not refused, and with a curve file of that name."""
+    angle = 2 * np.pi * np.arange(40) / 40
+    Path("curve").mkdir()
+    curve = Path("curve") / name.replace("/", "")
+    np.savetxt(curve, 0.4 * np.c_[np.cos(angle), np.sin(angle)])
+    words = f"-domain_cells 24,24 -output_every 10 -vesicle_shape file -time_end 0.02".split()
+    words = [*words, "-vesicle_file", str(curve), "-output_dir", name]
+    assert mpirun([PETVES, *words], 1).returncode == 0
+    first = Path(name).rename("first")
+    done = mpirun([PETVES, "-options_file", "first/resolved.opts"], 1)
+    assert done.returncode == 0 and (Path(name) / "run.h5").is_file(), done.stderr
+    assert without_wall(Path(name)) == without_wall(first)
+
+
+def test_poiseuille_flow_goes_from_wall_to_wall(tmp_path):
+    """Its half width and its middle are those of walls in y, unless they are given; without walls they stay."""
+    channel = "-domain_box 0,2,1,2 -domain_cells 48,24 -domain_bc_x periodic -flow_type poiseuille -vesicle_shape none -time_end 0"
+    for words, half_width, middle in (
+        ("-domain_bc_y wall", 0.5, 1.5),
+        ("-flow_half_width 4 -flow_center_y 0", 4, 0),
+        ("-domain_bc_y periodic", 3, 0),
+    ):
+        lines = run_petves(tmp_path / "out", f"{channel} {words} -output_overwrite").resolved
+        assert (float(lines["-flow_half_width"]), float(lines["-flow_center_y"])) == (half_width, middle)
+
+
+SMALL = "-domain_cells 32,32 -vesicle_semi_axes 0.4,0.5 -flow_type shear"
+FIELDS = ("fluid/u", "fluid/v", "fluid/p", "vesicle/markers", "vesicle/velocity", "vesicle/tension")
+
+
+@pytest.mark.parametrize(
+    "end, every, count",
+    [(0.25, 0.1, 4), (9.9, 0.1, 100), (9.91, 0.2, 51), (36, 0.5, 73), (99, 1, 100), (2.1e4, 500, 43)],
+)
+def test_a_run_has_at_most_100_frames(end, every, count, tmp_path):
+    """Without vesicles, at rest, in steps that the times saved are multiples of; the end is saved too."""
+    options = f"-vesicle_shape none -domain_cells 8,8 -time_step {every / 2} -time_end {end} -view"
+    run = run_petves(tmp_path / "run", options)
+    assert float(run.resolved["-output_every"]) == pytest.approx(every, rel=1e-9)
+    times = run.saved("time", "run.h5")
+    assert len(times) == count and times[-1] == pytest.approx(end, rel=1e-12)
+    assert run.summary["written"]["frames"] == count
+
+
+def test_what_was_written_is_said(tmp_path):
+    run = run_petves(tmp_path / "run", f"{SMALL} -time_step 0.01 -time_end 0.03 -output_every 0.01 -checkpoint_every 1")
+    written = run.summary["written"]
+    sizes = {path.name: path.stat().st_size for path in run.folder.iterdir()}
+    names = ("run.h5", "run.xmf", "series.csv", "checkpoint.h5", "checkpoint_1.h5")
+    assert set(sizes) - set(names) <= {"resolved.opts", "summary.json"}
+    assert written == {"frames": 4, "bytes": sum(sizes[name] for name in names), "bytes_run_h5": sizes["run.h5"]}
+    line = f"files in {run.folder}: {written['bytes'] / 1e6:.3g} MB, {sizes['run.h5'] / 1e6:.3g} MB of them run.h5 with 4 frames"
+    assert line in run.stdout
+
+
+def test_single_precision(tmp_path):
+    """The fields alone, rounded, on any number of ranks; the run is the same, and goes on with no other precision."""
+    options = f"{SMALL} -domain_cells 48,48 -time_step 0.01 -time_end 0.03 -output_every 0.01"
+    double = run_petves(tmp_path / "double", options)
+    single = run_petves(tmp_path / "single", f"{options} -output_precision single", 2)
+    one = run_petves(tmp_path / "one", f"{options} -output_precision single")
+    assert without_wall(one.folder) == without_wall(double.folder)
+    exact, rounded, others = frames(double.folder), frames(one.folder), frames(single.folder)
+    for name in FIELDS:
+        small = name.startswith("fluid")
+        assert rounded[name].dtype == (np.float32 if small else np.float64), name
+        np.testing.assert_array_equal(rounded[name], exact[name].astype(np.float32) if small else exact[name])
+        np.testing.assert_allclose(others[name], exact[name], rtol=1e-6, atol=1e-7 * np.abs(exact[name]).max())
+    assert (one.folder / "run.h5").stat().st_size < 0.62 * (double.folder / "run.h5").stat().st_size
+    text = (one.folder / "run.xmf").read_text()
+    assert text.count('"Float" Precision="4"') == 3 * 4 and text.count('"Float" Precision="8"') == 2 * 4
+    restart = f"{options} -time_end 0.04 -restart {one.folder}/checkpoint.h5"
+    refused(one.folder, f"{restart} -output_precision double", "-output_precision double: the checkpoint of")

@@ -74,11 +74,10 @@ if not SANITIZE:  # a sanitized library cannot be loaded into Python
             done.stderr
         ), "nothing is printed: the exception has the message"
 
-    def test_no_options_of_the_current_folder(tmp_path, monkeypatch):
-        monkeypatch.chdir(tmp_path)
-        (tmp_path / ".petscrc").write_text(f'-python "touch {tmp_path}/made"\n')
+    def test_no_options_of_the_current_folder(here):
+        (here / ".petscrc").write_text(f'-python "touch {here}/made"\n')
         run_python("import petves\nprint(petves.Simulation)\n")
-        assert not (tmp_path / "made").exists()
+        assert not (here / "made").exists()
 
     def test_a_callback_costs_forty_calls():
         assert float(run_python(SCRIPTS / "overhead.py").stdout) < 40

@@ -50,11 +50,10 @@ def test_mistyped_commands_and_scenes():
     assert tool("my.opts", good=False) == [line]
 
 
-def test_a_folder_hides_no_scene(tmp_path, monkeypatch):
+def test_a_folder_hides_no_scene(here):
     """Of the same name; a file does."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "shear").mkdir()
-    (tmp_path / "relax").touch()
+    (here / "shear").mkdir()
+    (here / "relax").touch()
     assert scene_file("shear").endswith("runs/shear.opts") and scene_file("relax") == "relax"
 
 

@@ -1,4 +1,5 @@
 """The path of a new user: every command of README and of the how-to pages is run, and prints what the page says.
+The notebooks of docs/ run, and the outputs stored in them are those that they have today.
 
 A page's blocks run in order in one folder. `opts` is a file, whose name is its first comment. `console` has commands
 behind `$ ` and what each prints: `...` is any lines, seconds are free, numbers agree to a thousandth. `python` is a
@@ -13,6 +14,8 @@ import sys
 from pathlib import Path
 from typing import Iterator, NamedTuple
 
+import nbformat
+import notebooks
 import pytest
 from harness import ENVIRONMENT, PACKAGE, PETVES, ROOT, SANITIZE
 
@@ -106,6 +109,30 @@ def test_page_prints_what_it_says(name, clone):
         assert prints(command.expected, (done.stderr if wrong else done.stdout).splitlines()), said
 
 
+def printed_by(cell: nbformat.NotebookNode) -> list[str]:
+    """Return the lines that a cell has printed."""
+    return "".join(out.text for out in cell.get("outputs", []) if out.output_type == "stream").splitlines()
+
+
+def shown(cell: nbformat.NotebookNode) -> int:
+    """Return how many pictures a cell shows."""
+    return sum(out.output_type == "display_data" and "image/png" in out.data for out in cell.get("outputs", []))
+
+
+@pytest.mark.skipif(SANITIZE, reason="a sanitized library cannot be loaded into Python")
+@pytest.mark.parametrize("name", notebooks.NAMES)
+def test_stored_outputs_are_todays(name, tmp_path, monkeypatch):
+    for variable, value in {**ENVIRONMENT, **PACKAGE, "PETVES": PETVES}.items():
+        monkeypatch.setenv(variable, value)
+    stored = nbformat.read(ROOT / "docs" / f"{name}.ipynb", as_version=4).cells
+    today = notebooks.executed(name, tmp_path).cells
+    assert sum(bool(printed_by(cell)) for cell in stored) >= 2 and sum(map(shown, stored)) >= 1
+    for old, new in zip(stored, today):
+        said = printed_by(old), printed_by(new)
+        assert prints(*said), (f"python3 tests/support/notebooks.py {name}", *said)
+        assert shown(old) == shown(new), old.source
+
+
 def test_pages_have_blocks_that_run():
     pages = [ROOT / "README.md", *(ROOT / "docs" / page for page in HOW_TO)]
     assert sum(len(blocks(page.read_text())) for page in pages) >= 18
@@ -113,6 +140,7 @@ def test_pages_have_blocks_that_run():
 
 def test_wrong_lines_are_found():
     assert alike("angle 0.387785, 0.8 s", "angle 0.387786, 1.3 s") and not alike("angle 0.3877", "angle 0.3900")
+    assert not prints(["angle 0.416 rad"], ["angle 0.418 rad"]) and prints(["angle 0.4160 rad"], ["angle 0.4161 rad"])
     assert alike("left 2.6e-15", "left 1.0e-14") and not alike("left 2.6e-15", "left 1.0e-3")
     assert prints(["...", "b", "..."], ["a", "b"]) and not prints(["...", "b"], ["a", "b", "c"])
     assert not prints([], ["a"]) and not prints(["a"], [])

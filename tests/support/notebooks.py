@@ -1,6 +1,6 @@
 """Run the notebooks of docs/ and write today's outputs into them: python3 tests/support/notebooks.py [tutorial study].
 
-tests/repo/test_notebooks.py compares what the notebooks have with what they print.
+tests/repo/test_newcomer.py compares what the notebooks have with what they print.
 """
 
 from __future__ import annotations
