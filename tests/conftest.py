@@ -32,7 +32,7 @@ def here(tmp_path, monkeypatch):
 
 #: Files that last longest, in the order in which their tests are handed to workers, so that none is begun last.
 LONG = "valgrind views runs docs newcomer programs output_faults restart accuracy tools one_folder damaged".split()
-LONG += "metamorphic studies fuzz pictures chart coupled unlike_ranks forged stability".split()
+LONG += "metamorphic studies fuzz pictures chart coupled unlike_ranks forged packaging output stability".split()
 LONG += "python python_package interrupted free_bodies elastic obstacles contrast baselines".split()
 
 

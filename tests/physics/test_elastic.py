@@ -341,8 +341,8 @@ KINDS += " -vesicle_center -1.5,.3,0,-.8,1.5,.6 -vesicle_viscosity_ratio 3,.5 -m
 #: More ranks than vesicles: the dense block of both is on one rank, the places where they bend on others.
 RANKS = {
     "permeable": f"{TWO} -vesicle_bending .05 -membrane_permeability .2 -membrane_osmotic 1,.5 -membrane_memory 1",
-    "angle": f"{GREEN} -membrane_stretching 2 -membrane_moment angle",
-    "helfrich": f"{GREEN} -membrane_stretching 2 -membrane_moment helfrich",
+    "angle": f"{GREEN} -membrane_stretching 2 -membrane_moment angle -domain_bc_x periodic",
+    "helfrich": f"{GREEN} -membrane_stretching 2 -membrane_moment helfrich -domain_bc_x periodic",
     "laws of kinds": f"{KINDS} -membrane_stretching 2,0 -membrane_viscosity .5,0 -membrane_memory 1",
     "one of two": f"{GREEN} -membrane_stretching 2,0 -membrane_memory 1,.5",
 }
@@ -352,7 +352,7 @@ STIFF = {"laws of kinds": (1, 3), "one of two": (2,)}
 
 @pytest.mark.parametrize("name", RANKS)
 def test_ranks_and_restart(tmp_path, name):
-    """In a box of four walls: permeable membranes, bending of stretched ones, a neo-Hookean membrane with contrast among
+    """In a channel and between four walls: permeable membranes, bending of stretched ones, a neo-Hookean membrane with contrast among
     inextensible ones, and one that stretches beside one that does not, with memories of their own."""
     columns = ["center_x_1", "inclination_2", "length_1", "area_2", "length_2", "coupled_its"]
     columns += ["energy_stretching"] * (name != "permeable")
