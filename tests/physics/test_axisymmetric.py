@@ -155,10 +155,10 @@ def test_lubrication(tmp_path):
 
 
 def test_thin_films_are_named(tmp_path):
-    narrow = "-tube_radius 0.6045 -vesicle_reduced_volume 0.7 -vesicle_spheroid capsule -sphere_degree 24"
+    narrow = "-tube_radius 0.62 -vesicle_reduced_volume 0.7 -vesicle_spheroid capsule -sphere_degree 12"
     run = run_petves(tmp_path / "run", f"{TUBE} {narrow} -time_step 0.002 -time_end 0.002")
     (warning,) = run.summary["warnings"]
-    assert "do not resolve the film along the tube after step" in warning and "try -sphere_degree 28" in warning
+    assert "do not resolve the film along the tube after step" in warning and "try -sphere_degree 16" in warning
 
 
 def meridians(run, degree: int) -> np.ndarray:
