@@ -132,7 +132,7 @@ def test_posts(tmp_path):
     aside = {}
     for diameter in (0.2, 0.4):
         area = 0.95 * np.pi * diameter**2 / 4
-        series = run_file("posts", tmp_path / f"{diameter}", f"-vesicle_area {area!r} -time_step .04 -time_end 4")
+        series = run_file("posts", tmp_path / f"{diameter}", f"-vesicle_area {area!r} -time_step .04 -time_end 3.2")
         at = np.interp(3.3, series["center_y"], series["center_x"])
         assert series["center_y"][-1] > 3.3
         aside[diameter] = at - 0.95

@@ -131,7 +131,7 @@ def test_scene_is_refused(ranks, tmp_path):
     scenes = {k: with_files(options, tmp_path) for k, (options, _) in enumerate(table)}
     found = list(run_scenes(tmp_path / "out", scenes, ranks, good=False).values())
     assert len(found) > 30 and not [run for run in found if run.status != 1 or run.folder.exists()]
-    assert not [case for case in zip(table, found) if not matches(case[0][1], case[1].errors[0])]
+    assert not [case for case in zip(table, found) if not matches(f"petves: error: {case[0][1]}", case[1].errors[0])]
 
 
 def sample() -> list[tuple[str, int, str]]:

@@ -177,7 +177,8 @@ def run_scenes(folder: Path, scenes: dict, ranks: int = 1, good: bool = True, **
     ended = re.findall(r"(.*?)^([012]) ([^\n]*)\n", done.stdout, re.DOTALL | re.MULTILINE)
     assert done.returncode == 0 and len(ended) == len(scenes), done.stdout + done.stderr
     assert not good or not any(int(status) for _, status, _ in ended), done.stdout
-    runs = [Run(place, int(n), said, [line] if line else []) for place, (said, n, line) in zip(places, ended)]
+    errors = [[f"petves: error: {line}"] if line else [] for _, _, line in ended]
+    runs = [Run(place, int(n), said, lines) for place, (said, n, _), lines in zip(places, ended, errors)]
     return dict(zip(scenes, runs))
 
 
