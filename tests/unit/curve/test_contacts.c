@@ -153,12 +153,10 @@ static void CheckGap(PetscReal gap, PetscReal period, PetscReal tolerance) {
 
 /* One circle alone has no gap, with an image it has that to it. */
 static void CheckAlone(void) {
-  const Circle circle = {0, 0, 1};
-  const PetscReal none[2] = {0, 0}, box[2] = {5, 2.25};
+  const PetscReal box[2][2] = {{0, 0}, {5, 2.25}};
   PetscReal X[2 * POINTS], gap[2];
-  Place(1, &circle, X);
-  const CurveSet sets[2] = {{1, 1, start, NULL, X, none, PETSC_TRUE}, {1, 1, start, NULL, X, box, PETSC_TRUE}};
-  for (int k = 0; k < 2; k++) TestCall(CurveLeastGap(&sets[k], &gap[k]));
+  Place(1, &(Circle){0, 0, 1}, X);
+  for (int k = 0; k < 2; k++) TestCall(CurveLeastGap(&(CurveSet){1, 1, start, NULL, X, box[k], PETSC_TRUE}, &gap[k]));
   CHECK(PetscIsNanReal(gap[0]) && PetscAbsReal(gap[1] - 0.25) < 1e-3, "one circle: %g alone, %g to its image", gap[0],
         gap[1]);
 }
@@ -188,24 +186,24 @@ static void CheckFilm(PetscBool images, PetscReal coarse, PetscInt v, PetscInt w
 /* A circle against a curve that does not move, `gap` below its lowest point: half a circle, open, with its solid
    within, or a line across the period, with its solid below or (back) above, near whose end the circle is. */
 static void CheckSolid(CurveType type, PetscBool back, PetscReal gap) {
-  const Circle circle = {type == CURVE_OPEN ? 0.3 : 2.9, 0, 1};
-  const PetscReal period[2] = {type == CURVE_OPEN ? 0 : 6, 0}, along = back ? 6 : -6;
-  const CurveKind kind[2] = {{CURVE_CLOSED}, {type, {type == CURVE_OPEN ? 0 : along, 0}}};
+  const PetscBool open = type == CURVE_OPEN;
+  const PetscReal period[2] = {open ? 0 : 6, 0}, along = back ? 6 : -6;
+  const CurveKind kind[2] = {{CURVE_CLOSED}, {type, {open ? 0 : along, 0}}};
   PetscReal X[4 * POINTS];
   CurveGap *gaps;
   PetscInt n;
-  Place(1, &circle, X);
+  Place(1, &(Circle){open ? 0.3 : 2.9, 0, 1}, X);
   for (PetscInt k = 0; k < POINTS; k++) {
     const PetscReal t = PETSC_PI * (PetscReal)k / (POINTS - 1);
-    X[2 * (POINTS + k)] = type == CURVE_OPEN ? 0.3 + 2 * PetscCosReal(t) : along * ((PetscReal)k / POINTS - 0.5);
-    X[2 * (POINTS + k) + 1] = -1 - gap - (type == CURVE_OPEN ? 2 - 2 * PetscSinReal(t) : 0);
+    X[2 * (POINTS + k)] = open ? 0.3 + 2 * PetscCosReal(t) : along * ((PetscReal)k / POINTS - 0.5);
+    X[2 * (POINTS + k) + 1] = -1 - gap - (open ? 2 - 2 * PetscSinReal(t) : 0);
   }
   const CurveSet set = {2, 1, start, kind, X, period, PETSC_TRUE};
   TestCall(CurveGaps(&set, 0.2, &n, &gaps));
   const PetscReal found = n ? gaps[0].distance : NAN;
   CHECK(n == 1 && gaps[0].curve[0] == 0 && gaps[0].curve[1] == 1 &&
             (back ? found < -gap + 1e-3 : PetscAbsReal(found - gap) < 6e-3),
-        "a circle %g from a curve that %s%s: %g", gap, type == CURVE_OPEN ? "is open" : "spans the period",
+        "a circle %g from a curve that %s%s: %g", gap, open ? "is open" : "spans the period",
         back ? ", on its solid's side" : "", found);
   TestCall(PetscFree(gaps));
 }
