@@ -34,13 +34,15 @@ static PetscReal RingError(const OffsetTable *t, PetscInt radius) {
    Stokes equations with that force, and the Stokeslet far away with a remainder in h^2/r^2. */
 static void CheckTable(const OffsetTable *t, const OffsetTable *p) {
   static const OffsetBlock pressure[2] = {OFFSET_UU, OFFSET_VV};
-  PetscReal divergence = 0, momentum = 0, ring[3];
+  PetscReal divergence = 0, momentum = 0, far = 0, ring[3];
   CheckBelow(OffsetAt(t, OFFSET_UU, 0, 0) - 0.168460448979795, 1e-14, "uu(0,0)");
   CheckBelow(OffsetAt(t, OFFSET_UU, 1, 0) - 0.088882977433848, 1e-14, "uu(1,0)");
   for (PetscInt k = 0; k < 2 * 79 * 79; k++) {
     const int s = k % 2;
     const PetscInt i = k / 2 % 79 - 39, j = k / 2 / 79 - 39;
-    const PetscReal here = OffsetAt(p, pressure[s], i, j);
+    const PetscReal here = OffsetAt(p, pressure[s], i, j), x[2] = {i - 0.5 * !s, j - 0.5 * s};
+    const PetscReal r2 = TestProduct(2, x, x);
+    if (r2 > 100) TestWorse(&far, (here - x[s] / (2 * PETSC_PI * r2)) * r2 * PetscSqrtReal(r2));
     TestWorse(&divergence, Response(t, s, 0, i, j) - Response(t, s, 0, i - 1, j) + Response(t, s, 1, i, j) -
                                Response(t, s, 1, i, j - 1));
     for (int r = 0; r < 2; r++)
@@ -50,6 +52,7 @@ static void CheckTable(const OffsetTable *t, const OffsetTable *p) {
   }
   CheckBelow(divergence, 1e-14, "the response has no divergence");
   CheckBelow(momentum, 1e-13, "Laplacian, pressure gradient and force add up to nothing");
+  CheckBelow(far, 0.1, "far away the pressure is x/(2 pi r^2), times r^3");
   for (int k = 0; k < 3; k++) ring[k] = RingError(t, 10 << k);
   CheckBelow(ring[0], 0.05, "Stokeslet far away, apart by c/r^2: c at r = 10");
   CheckBelow(ring[1] / ring[0] - 1, 0.05, "c at r = 20 is that");
