@@ -171,43 +171,42 @@ static void PaperScenes(void) {
 
 static const struct {
   const char *name, *options;
-  PetscReal within;
+  PetscReal within; /* 0: 1e-9 */
 } scenes[] = {
-    {"exact near field", CELLS, 1e-9},
-    {"ib6", CELLS " -delta_type ib6", 1e-9},
-    {"order 1", CELLS " -scheme_order 1", 1e-9},
-    {"chords", CELLS " -membrane_derivative bending", 1e-9},
-    {"unsteady", CELLS " -fluid_inertia unsteady", 1e-9},
-    {"channel", CELLS " -domain_box 0,2.5,-1,1 -domain_cells 30,24 -vesicle_center 1.2,0.1" ALONG, 1e-9},
-    {"seam", CELLS " -domain_cells 25,25 -vesicle_center 0.97,-0.95" SEAMS, 1e-9},
-    {"close markers", CELLS " -vesicle_spacing 0.7", 1e-9},
-    {"pair", CELLS PAIR " -vesicle_center -0.29375,0.05,0.29375,-0.05", 1e-9},
-    {"pair over a seam", CELLS PAIR " -vesicle_center -0.925,0.05,0.725,-0.05" ALONG, 1e-9},
-    {"no bending", CELLS " -vesicle_bending 0", 1e-9},
-    {"little bending", CELLS " -vesicle_bending 1e-4", 1e-9},
-    {"stiff", CELLS " -vesicle_bending 1", 1e-9},
+    {"exact near field", CELLS},
+    {"ib6", CELLS " -delta_type ib6"},
+    {"order 1", CELLS " -scheme_order 1"},
+    {"chords", CELLS " -membrane_derivative bending"},
+    {"unsteady", CELLS " -fluid_inertia unsteady"},
+    {"channel", CELLS " -domain_box 0,2.5,-1,1 -domain_cells 30,24 -vesicle_center 1.2,0.1" ALONG},
+    {"seam", CELLS " -domain_cells 25,25 -vesicle_center 0.97,-0.95" SEAMS},
+    {"close markers", CELLS " -vesicle_spacing 0.7"},
+    {"pair", CELLS PAIR " -vesicle_center -0.29375,0.05,0.29375,-0.05"},
+    {"pair over a seam", CELLS PAIR " -vesicle_center -0.925,0.05,0.725,-0.05" ALONG},
+    {"no bending", CELLS " -vesicle_bending 0"},
+    {"little bending", CELLS " -vesicle_bending 1e-4"},
+    {"stiff", CELLS " -vesicle_bending 1"},
     {"stiffer", CELLS " -vesicle_bending 100", 1e-7},
-    {"quasi-steady in a box", CELLS " -fluid_inertia none", 1e-9},
-    {"quasi-steady in a channel", CELLS " -fluid_inertia none" ALONG, 1e-9},
-    {"quasi-steady, periodic", CELLS " -fluid_inertia none" SEAMS, 1e-9},
-    {"convective", CELLS " -fluid_inertia convective -time_step 0.005 -time_end 0.02", 1e-9},
-    {"no vesicle", " -vesicle_shape none -domain_cells 24,24 -flow_type shear -fluid_inertia unsteady" STEPS, 1e-9},
-    {"box part between walls", SMALL " -fluid_inertia none", 1e-9},
-    {"box part in a channel", SMALL " -fluid_inertia none" ALONG, 1e-9},
-    {"contrast between walls", UNLIKE, 1e-9},
-    {"contrast next to walls", UNLIKE " -vesicle_center -.8,-1.58,.8,1.6 -vesicle_angle 5" ALONG, 1e-9},
-    {"contrast, periodic", UNLIKE SEAMS, 1e-9},
-    {"repulsion and adhesion", TOUCHING STEPS ALONG, 1e-9},
-    {"gravity in a box", SETTLES " -fluid_inertia none", 1e-9},
-    {"gravity, periodic", SETTLES " -fluid_inertia none" SEAMS, 1e-9},
-    {"gravity with inertia, periodic", SETTLES " -fluid_inertia unsteady" SEAMS, 1e-9},
-    {"post", POST, 1e-9},
-    {"post with inertia", POST " -fluid_inertia unsteady", 1e-9},
-    {"post and contrast", POST " -vesicle_viscosity_ratio 5", 1e-9},
+    {"quasi-steady in a box", CELLS " -fluid_inertia none"},
+    {"quasi-steady in a channel", CELLS " -fluid_inertia none" ALONG},
+    {"quasi-steady, periodic", CELLS " -fluid_inertia none" SEAMS},
+    {"convective", CELLS " -fluid_inertia convective -time_step 0.005 -time_end 0.02"},
+    {"no vesicle", " -vesicle_shape none -domain_cells 24,24 -flow_type shear -fluid_inertia unsteady" STEPS},
+    {"box part between walls", SMALL " -fluid_inertia none"},
+    {"box part in a channel", SMALL " -fluid_inertia none" ALONG},
+    {"contrast between walls", UNLIKE},
+    {"contrast next to walls", UNLIKE " -vesicle_center -.8,-1.58,.8,1.6 -vesicle_angle 5" ALONG},
+    {"contrast, periodic", UNLIKE SEAMS},
+    {"repulsion and adhesion", TOUCHING STEPS ALONG},
+    {"gravity in a box", SETTLES " -fluid_inertia none"},
+    {"gravity, periodic", SETTLES " -fluid_inertia none" SEAMS},
+    {"gravity with inertia, periodic", SETTLES " -fluid_inertia unsteady" SEAMS},
+    {"post", POST},
+    {"post with inertia", POST " -fluid_inertia unsteady"},
+    {"post and contrast", POST " -vesicle_viscosity_ratio 5"},
     {"post, flux held",
      POISEUILLE " -vesicle_shape none -domain_cells 72,24 -obstacle_shape posts -obstacle_center 1.5,.5 "
-                "-obstacle_radius .2 -flow_drive flux -time_step .01 -time_end .01",
-     1e-9},
+                "-obstacle_radius .2 -flow_drive flux -time_step .01 -time_end .01"},
     {"throat", THROAT, 3e-9},
 };
 
@@ -229,6 +228,6 @@ static void BumpBesideCorner(void) {
 void Facts(void) {
   PaperScenes();
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scenes); k++)
-    Agrees(scenes[k].name, scenes[k].within, scenes[k].options);
+    Agrees(scenes[k].name, scenes[k].within > 0 ? scenes[k].within : 1e-9, scenes[k].options);
   BumpBesideCorner();
 }
