@@ -15,14 +15,7 @@ RANKS |= dict(test_nearfield=(1, 3, 5), test_direct=(1,))
 ALONE = "axial contacts crossing dipolefaces judge kernel motion packing pairkernel revolved symmetric tube"
 RANKS |= {f"test_{name}": (1,) for name in ALONE.split()}
 #: Facts of those that state fewer than 20.
-FEW = {
-    "test_axial": 4,
-    "test_revolved": 14,
-    "test_tube": 5,
-    "test_near_cells": 14,
-    "test_nearfar": 11,
-    "test_nearfield": 17,
-}
+FEW = dict(test_axial=4, test_near_cells=16)
 
 
 @pytest.mark.parametrize("name,ranks", [(name, ranks) for name in NAMES for ranks in RANKS.get(name, (1, 3))])
