@@ -168,7 +168,8 @@ PetscErrorCode OptionsTryLate(const OptionTable *t) {
   PetscFunctionBeginUser;
   PetscCall(OptionTryLate(t->comm, "-log_view", PETSC_TRUE));
   PetscCall(OptionTryLate(t->comm, "-options_left", PETSC_FALSE));
-  PetscFunctionReturn(OptionTryLate(t->comm, "-options_view", PETSC_FALSE));
+  PetscCall(OptionTryLate(t->comm, "-options_view", PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode OptionsCheckUnused(const OptionTable *t, const void *values, const char *const others[],

@@ -251,8 +251,7 @@ PetscErrorCode SceneChooseByError(Draft s, AutoStage stage) {
   const SceneRule rules[] = {
     {s->scheme.wanted < 1e-4 || s->scheme.wanted > 0.1,
      "-scheme_auto {-scheme_auto}: outside of what was measured; allowed: 0, or 1e-4 to 0.1"},
-    {SceneIsProjection(s),
-     "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"},
+    {SceneIsProjection(s), "-scheme_auto {-scheme_auto}: with -scheme_type {-scheme_type}; allowed: coupled"},
     {stage == AUTO_SPACE && s->dim == DIM_AXIAL && !SceneSpaceMeasured(s),
      "-scheme_auto {-scheme_auto}: outside of what was measured with -dim axisymmetric; allowed: 1e-3 to 0.1, one prolate spheroid of -vesicle_reduced_volume 0.7 or more, 0.8 below 1e-2, in a tube of 1.1 to 2 R0 without a throat, in -flow_type tube of a mean velocity of 1 to 10 kappa/(nu R0^2), without viscosity ratio or gravity"},
     {stage == AUTO_SPACE && !SceneSpaceMeasured(s),
@@ -340,5 +339,6 @@ PetscErrorCode SceneReport(Scene s) {
     if (!space) PetscCall(SceneReportGrid(s));
   }
   if (*s->warning) PetscCall(PetvesSay(s->comm, "petves: warning: %s\n", s->warning));
-  PetscFunctionReturn(AutoReportMarkers(s));
+  PetscCall(AutoReportMarkers(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -100,7 +100,8 @@ static PetscErrorCode ExtentMeasure(Draft s, Extent *e) {
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
-  PetscFunctionReturn(SceneDropShape(s));
+  PetscCall(SceneDropShape(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* x with two digits, rounded up (1), or to the nearest (0). */

@@ -154,6 +154,7 @@ PetscErrorCode SceneReportGrid(Scene scene) {
   PetscCall(SCENE_TEXT(scene, errors, leaves));
   PetscCall(SCENE_TEXT(scene, rows, what));
   PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g, %s: %s\n", (double)cells, leaves, what));
-  PetscFunctionReturn(AutoReportWall(scene, fluid));
+  PetscCall(AutoReportWall(scene, fluid));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */

@@ -99,6 +99,7 @@ PetscErrorCode SceneCheckCells(Scene s) {
      "-domain_cells {-domain_cells}: cells of %g x %g; allowed: square cells, in this -domain_box such as %.0f,%.0f", {hx, hy, fit, fit * ratio}}};
   return REFUSE(s, rules);
 }
+
 /* A list that says what vesicles are has `each` numbers for all of them, a vesicle, or with a mixture a kind; packed
    vesicles have no numbers by which a list could name them. */
 static PetscErrorCode SceneCheckKinds(Scene s, const char name[], PetscInt each) {
@@ -191,8 +192,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
      "-membrane_memory {-membrane_memory}: -vesicle_bending 0 bends back to no shape; allowed: 0, or -vesicle_bending above 0"},
     {!stretches && ListLargest(&m->viscosity) > 0,
      "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
-    {m->osmotic.n != 2,
-     "-membrane_osmotic {-membrane_osmotic}: not two numbers; allowed: inside, outside"},
+    {m->osmotic.n != 2, "-membrane_osmotic {-membrane_osmotic}: not two numbers; allowed: inside, outside"},
     {m->permeability == 0 && (m->osmotic.v[0] != 0 || m->osmotic.v[1] != 0),
      "-membrane_osmotic: -membrane_permeability {-membrane_permeability} lets no water pass; allowed: with a permeability above 0"},
     {m->permeability > 0 && (paper || SceneHasContrast(s)),
@@ -218,8 +218,7 @@ static PetscErrorCode SceneCheckFlow(Scene s) {
   const PetscInt *bc = s->fluid.bc, type = s->flow.type;
   const PetscBool total = s->fluid.form == FORM_TOTAL, moved = total && type != FLOW_QUIESCENT;
   const SceneRule rules[] = {
-    {b[0] >= b[1] || b[2] >= b[3],
-     "-domain_box {-domain_box}: empty; allowed: x_min < x_max and y_min < y_max"},
+    {b[0] >= b[1] || b[2] >= b[3], "-domain_box {-domain_box}: empty; allowed: x_min < x_max and y_min < y_max"},
     {bc[0] == BC_WALL && bc[1] == BC_PERIODIC,
      "-domain_bc_y periodic: with walls in x that is a channel along y; allowed: the scene turned by 90 degrees, -domain_bc_x periodic -domain_bc_y wall with x and y of box, cells, centres, angles and flow exchanged"},
     {s->fluid.inertia == INERTIA_CONVECTIVE && FlowIsCustom(&s->flow),
@@ -267,39 +266,25 @@ static PetscErrorCode SceneCheckVesicles(Scene s) {
      "-vesicle_center: %.0f number%s given; allowed: 2 for each of -vesicle_count {-vesicle_count} vesicles", {centers}, {centers == 1 ? "" : "s"}},
     {placed && angles != 1 && angles != count,
      "-vesicle_angle: %.0f numbers given; allowed: 1 for each of -vesicle_count {-vesicle_count} vesicles, or once for all", {angles}},
-    {file && !*own->file,
-     "-vesicle_shape file: no -vesicle_file given; allowed: a text file with x y a line"},
-    {*own->file && !file,
-     "-vesicle_file {-vesicle_file}: not read; allowed: with -vesicle_shape file only"},
+    {file && !*own->file, "-vesicle_shape file: no -vesicle_file given; allowed: a text file with x y a line"},
+    {*own->file && !file, "-vesicle_file {-vesicle_file}: not read; allowed: with -vesicle_shape file only"},
     {own->shape != SHAPE_NONE && own->markers && own->markers < 8,
      "-vesicle_markers {-vesicle_markers}: too few; allowed: at least 8"},
     {own->markers && own->spacing > 0,
      "-vesicle_markers {-vesicle_markers}: given together with -vesicle_spacing; allowed: one of them"},
     {s->time.end / s->time.dt >= 1e9,
      "-time_step {-time_step}: more than 1e9 steps to -time_end {-time_end}; allowed: a larger step"},
-    {!*s->output.dir,
-     "-output_dir: empty; allowed: a folder's name"}};
+    {!*s->output.dir, "-output_dir: empty; allowed: a folder's name"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, shapes));
   if (!file) PetscCall(SceneCheckKinds(s, "-vesicle_semi_axes", 2)); /* how many a file has is known later */
   for (size_t k = 0; k < sizeof(kinds) / sizeof(kinds[0]) && !file; k++) PetscCall(SceneCheckKinds(s, kinds[k], 1));
   PetscFunctionReturn(REFUSE(s, markers));
 }
-/* clang-format on */
-
-PetscErrorCode SceneCheck(Scene scene) {
-  PetscFunctionBeginUser;
-  PetscCall(SceneCheckScheme(scene));
-  PetscCall(SceneCheckMembranes(scene));
-  PetscCall(SceneCheckLengths(scene));
-  PetscCall(SceneCheckFlow(scene));
-  PetscFunctionReturn(SceneCheckVesicles(scene));
-}
 
 /* Unbounded fluid: the step is dense work on the markers alone; there is no grid on which a fluid with inertia or a
    projection could be. Viscosities: the double layer is of quasi-steady flow, as with inertia the inner fluid's
    velocity obeys another equation than the outer one's; it stands on the unsplit step and its near field. */
-/* clang-format off */
 PetscErrorCode SceneCheckBodies(Scene s) {
   const FluidSpec *f = &s->fluid;
   const PetscInt vesicles = s->shape.vesicles, entries = s->vesicles.kind ? s->vesicles.mixture.n : vesicles;
@@ -309,10 +294,8 @@ PetscErrorCode SceneCheckBodies(Scene s) {
                   quasi = f->inertia == INERTIA_AUTO || f->inertia == INERTIA_NONE;
   PetscReal period[2];
   const SceneRule unbounded[] = {
-    {free && f->bc[1] != BC_FREE,
-     "-domain_bc_x free: with a boundary in y; allowed: free in x and y, or in neither"},
-    {!free && f->bc[1] == BC_FREE,
-     "-domain_bc_y free: with a boundary in x; allowed: free in x and y, or in neither"},
+    {free && f->bc[1] != BC_FREE, "-domain_bc_x free: with a boundary in y; allowed: free in x and y, or in neither"},
+    {!free && f->bc[1] == BC_FREE, "-domain_bc_y free: with a boundary in x; allowed: free in x and y, or in neither"},
     {free && !coupled,
      "-scheme_type {-scheme_type}: not with -domain_bc_x free, where no fluid is solved for on a grid; allowed: coupled"},
     {free && !exact,
@@ -337,7 +320,6 @@ PetscErrorCode SceneCheckBodies(Scene s) {
      "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: not with -fluid_inertia {-fluid_inertia}, because with inertia the fluid inside obeys another equation than the one outside; allowed: 1, or -fluid_inertia none"},
     {contrast && (!exact || strcmp(s->coupling.kernel, "cbs54")),
      "-vesicle_viscosity_ratio {-vesicle_viscosity_ratio}: not with -delta_type {-delta_type} and this -coupling_near_field, whose sums are of cbs54 and exact; allowed: 1, or -delta_type cbs54 -coupling_near_field exact"}};
-  /* clang-format on */
   PetscFunctionBeginUser;
   FluidSpecPeriods(f, period);
   PetscCall(REFUSE(s, unbounded));
@@ -346,4 +328,15 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   PetscCall(REFUSE(s, forces));
   if (vesicles) PetscCall(SceneCheckList(s, "-vesicle_viscosity_ratio", 1, entries, what, "a vesicle or kind"));
   PetscFunctionReturn(REFUSE(s, viscosities));
+}
+/* clang-format on */
+
+PetscErrorCode SceneCheck(Scene scene) {
+  PetscFunctionBeginUser;
+  PetscCall(SceneCheckScheme(scene));
+  PetscCall(SceneCheckMembranes(scene));
+  PetscCall(SceneCheckLengths(scene));
+  PetscCall(SceneCheckFlow(scene));
+  PetscCall(SceneCheckVesicles(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -96,7 +96,8 @@ static PetscErrorCode ArcBump(Scene scene, int side, Curve *curve) {
     xy[2 * k] = middle + (side ? t : -t) * length;
     xy[2 * k + 1] = side ? box[3] - rise : box[2] + rise;
   }
-  PetscFunctionReturn(CurveFromPoints(&open, BUMP_POINTS, xy, curve));
+  PetscCall(CurveFromPoints(&open, BUMP_POINTS, xy, curve));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A curve before it has markers. */
@@ -160,8 +161,7 @@ static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
      "-obstacle_shift {-obstacle_shift}: %.0f rows are shifted by %g columns, so that the lattice breaks where the box repeats; allowed: rows times shift a whole number", {rows, turns}},
     {own->posts.count && columns,
      "-obstacle_count {-obstacle_count}: given together with -obstacle_lattice; allowed: one of them"},
-    {!count && own->center.n % 2,
-     "-obstacle_center {-obstacle_center}: not pairs; allowed: x,y of each post"}};
+    {!count && own->center.n % 2, "-obstacle_center {-obstacle_center}: not pairs; allowed: x,y of each post"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(scene, rules));
   PetscFunctionReturn(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
@@ -314,7 +314,8 @@ PetscErrorCode SceneMakeObstacles(Draft scene) {
   for (PetscInt k = 0; k < o.count; k++) PetscCall(CurveDestroy(&o.of[k].curve));
   PetscCall(PetscFree(o.of));
   PetscCall(SceneChooseFreeBodies(scene));
-  PetscFunctionReturn(SceneCheckObstacles(scene));
+  PetscCall(SceneCheckObstacles(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SceneDropObstacles(Draft scene) {

@@ -28,19 +28,6 @@ const char *SceneSpaceMissing(const OptionRow *row, const void *scene) {
   return dim == DIM_PLANE || row->group ? NULL : "-dim 2";
 }
 
-static PetscErrorCode SceneCheckSpaceLists(Scene s) {
-  static const struct {
-    const char *name;
-    PetscInt each;
-  } lists[] = {{"-vesicle_radius", 1},    {"-vesicle_reduced_volume", 1}, {"-vesicle_center", 3},
-               {"-vesicle_half_axes", 3}, {"-vesicle_axis", 3},           {"-vesicle_density_difference", 1},
-               {"-vesicle_bending", 1},   {"-vesicle_viscosity_ratio", 1}};
-  PetscFunctionBeginUser;
-  for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
-    PetscCall(SceneCheckList(s, lists[k].name, lists[k].each, s->vesicles.count, "vesicles", "a vesicle"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* R0: the largest radius and the least. The largest bending modulus, of which with the largest radius -flow_chi and
    -flow_ca are. The fastest rate of relaxation: the largest modulus over nu R0^3 of a vesicle (1/time). */
 static void SceneSpaceScales(Scene s, PetscReal R0[2], PetscReal *bending, PetscReal *relaxation) {
@@ -62,13 +49,23 @@ static PetscBool SceneAlongAxis(const RealList *list, PetscBool alike) {
   return PETSC_TRUE;
 }
 
+/* Lists of other lengths, and what a scene in three dimensions cannot have. */
 /* clang-format off */
 static PetscErrorCode SceneCheckSpace(Scene s) {
+  static const struct {
+    const char *name;
+    PetscInt each;
+  } lists[] = {{"-vesicle_radius", 1},    {"-vesicle_reduced_volume", 1}, {"-vesicle_center", 3},
+               {"-vesicle_half_axes", 3}, {"-vesicle_axis", 3},           {"-vesicle_density_difference", 1},
+               {"-vesicle_bending", 1},   {"-vesicle_viscosity_ratio", 1}};
   const RealList *axis = &s->space.axis, *bending = &s->membrane.stiffness;
   const PetscBool half_axes = SceneGiven(s, "-vesicle_half_axes"), volume = SceneGiven(s, "-vesicle_reduced_volume"),
                   file = (PetscBool)(*s->vesicles.file != 0);
   PetscBool directionless = PETSC_FALSE;
   PetscReal softest = PETSC_MAX_REAL;
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
+    PetscCall(SceneCheckList(s, lists[k].name, lists[k].each, s->vesicles.count, "vesicles", "a vesicle"));
   for (PetscInt k = 0; k < bending->n; k++) softest = PetscMin(softest, bending->v[k]);
   for (PetscInt k = 0; k < axis->n; k += 3)
     if (axis->v[k] == 0 && axis->v[k + 1] == 0 && axis->v[k + 2] == 0) directionless = PETSC_TRUE;
@@ -77,29 +74,24 @@ static PetscErrorCode SceneCheckSpace(Scene s) {
      "-flow_type formula: no formula given; allowed: with -flow_u, -flow_v or -flow_w"},
     {s->flow.type == FLOW_UNIFORM && s->flow.velocity.n != 3,
      "-flow_velocity {-flow_velocity}: not three numbers; allowed: u_x,u_y,u_z"},
-    {strcmp(s->scheme.type, "coupled") != 0,
-     "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
+    {strcmp(s->scheme.type, "coupled") != 0, "-scheme_type {-scheme_type}: of the plane; allowed with -dim 3: coupled"},
     {half_axes && (volume || SceneGiven(s, "-vesicle_radius")),
      "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_radius or -vesicle_reduced_volume; allowed: one of both descriptions"},
     {file && (half_axes || volume || SceneGiven(s, "-vesicle_axis") || SceneGiven(s, "-vesicle_spheroid")),
      "-vesicle_file {-vesicle_file}: with -vesicle_half_axes, -vesicle_reduced_volume, -vesicle_axis or -vesicle_spheroid; allowed: -vesicle_radius and -vesicle_center"},
-    {s->gravity.g.n != 3,
-     "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
+    {s->gravity.g.n != 3, "-fluid_gravity {-fluid_gravity}: not three numbers; allowed: g_x,g_y,g_z"},
     {s->time.adapt == ADAPT_ERROR && s->scheme.order < 2,
      "-time_adapt error: with -scheme_type {-scheme_type} of order {-scheme_order}; allowed: coupled with -scheme_order 2 or 3"},
-    {s->space.degree % 2,
-     "-sphere_degree {-sphere_degree}: odd; allowed: an even number"},
+    {s->space.degree % 2, "-sphere_degree {-sphere_degree}: odd; allowed: an even number"},
     {s->space.degree > 32 && (s->dim != DIM_AXIAL || s->vesicles.count > 1 || file),
      "-sphere_degree {-sphere_degree}: more than whole surfaces have room for; allowed up to 32, or with -dim axisymmetric and one vesicle without -vesicle_file"},
     {half_axes && s->space.spheroid == SPHEROID_CAPSULE,
      "-vesicle_half_axes {-vesicle_half_axes}: with -vesicle_spheroid capsule; allowed: one of both descriptions"},
-    {softest == 0,
-     "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"},
+    {softest == 0, "-vesicle_bending {-vesicle_bending}: no stiffness; allowed with -dim 3: >0"},
     {s->space.spheroid == SPHEROID_CAPSULE && ListLargest(&s->space.reduced_volume) > CAPSULE_MOST,
      "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; allowed: up to 0.97"},
-    {directionless,
-     "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"}};
-  return REFUSE(s, rules);
+    {directionless, "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"}};
+  PetscFunctionReturn(REFUSE(s, rules));
 }
 
 /* What a scene of bodies of revolution about x cannot have; the flow in a tube. */
@@ -154,7 +146,6 @@ PetscErrorCode SceneResolveSpace(Draft s) {
   SurfaceRows rows = {0};
   PetscFunctionBeginUser;
   PetscCall(SceneReadSurfaces(s, &rows));
-  PetscCall(SceneCheckSpaceLists(s));
   PetscCall(SceneCheckSpace(s));
   PetscCall(SceneResolveAxial(s));
   PetscCall(SceneChooseByError(s, AUTO_SPACE));

@@ -120,7 +120,8 @@ PetscErrorCode KindFit(Scene scene, Kind *kind) {
   PetscFunctionBeginUser;
   PetscCall(KindMarkerCount(scene, kind, spectral, &kind->M));
   PetscCall(KindFitCurve(&kind->curve, kind->length, kind->area, spectral, kind->M, &kind->X));
-  PetscFunctionReturn(KindFitRest(scene, spectral, kind));
+  PetscCall(KindFitRest(scene, spectral, kind));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The membrane by entry k of the lists. */
@@ -169,6 +170,7 @@ static PetscErrorCode KindsOfEllipses(Scene scene, Kinds *all) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* clang-format off */
 static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   static const char *const lists[] = {"-vesicle_angle",       "-vesicle_bending",    "-membrane_law",
                                       "-membrane_stretching", "-membrane_viscosity", "-membrane_memory"};
@@ -181,10 +183,8 @@ static PetscErrorCode KindsOfFile(Scene scene, Kinds *all) {
   PetscCall(PetscCalloc1(all->kinds, &all->kind));
   for (PetscInt k = 0; k < all->kinds; k++) all->kind[k].curve = curve[k];
   PetscCall(PetscFree(curve));
-  PetvesCheck(!SceneGiven(scene, "-vesicle_count") || own->count == all->vesicles, scene->comm,
-              "-vesicle_count %" PetscInt_FMT ": -vesicle_file %s has %" PetscInt_FMT
-              " curves; allowed: the same number",
-              own->count, own->file, all->vesicles);
+  PetscCall(SCENE_REFUSE_IF(scene, SceneGiven(scene, "-vesicle_count") && own->count != all->vesicles,
+    "-vesicle_count {-vesicle_count}: -vesicle_file {-vesicle_file} has %.0f curves; allowed: the same number", {all->vesicles}));
   PetscCall(SceneCheckList(scene, "-vesicle_center", 2, all->vesicles, "curves", "a curve"));
   for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
     PetscCall(SceneCheckList(scene, lists[k], 1, all->vesicles, "curves", "a curve"));
@@ -208,7 +208,6 @@ static PetscReal KindsMeanArea(Scene scene) {
   return mean;
 }
 
-/* clang-format off */
 /* How many vesicles a packing takes, or with -vesicle_count their area. */
 static PetscErrorCode KindsCountPacked(Draft scene) {
   SceneVesicles *own = &scene->vesicles;
@@ -310,7 +309,8 @@ PetscErrorCode KindsCreate(Draft scene, Kinds *all) {
     stretching = PetscMax(stretching, kind->material.modulus);
     scene->shape.longest = PetscMax(scene->shape.longest, kind->length);
   }
-  PetscFunctionReturn(FlowChoose(scene, stretching));
+  PetscCall(FlowChoose(scene, stretching));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode KindsDestroy(Kinds *all) {

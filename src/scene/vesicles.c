@@ -165,7 +165,8 @@ PetscErrorCode SceneMakeShape(Draft scene) {
   }
   PetscCall(PetscFree(pose));
   PetscCall(KindsDestroy(&kinds));
-  PetscFunctionReturn(VesiclesCheckOverlap(scene, shape));
+  PetscCall(VesiclesCheckOverlap(scene, shape));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SceneDropShape(Draft scene) {

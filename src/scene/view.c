@@ -128,7 +128,8 @@ static PetscErrorCode ViewPlane(Scene s, PetscViewer v) {
   PetscCall(ViewFlow(s, v));
   PetscCall(ViewVesicles(s, v));
   PetscCall(VIEW(s, v, scheme));
-  PetscFunctionReturn(ViewDefaults(s, v));
+  PetscCall(ViewDefaults(s, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ViewSpace(Scene s, PetscViewer v) {
