@@ -1,5 +1,6 @@
 #include "mobility/neardistant.h"
 #include "layers/nearrows.h"
+#include "numerics/blas.h"
 
 #define DEGREE 7
 #define MOST ((DEGREE + 1) * (DEGREE + 2) / 2)
@@ -18,7 +19,7 @@ PetscErrorCode NearDistantDestroy(NearDistant *distant) {
   NearDistant d = *distant;
   PetscFunctionBeginUser;
   if (!d) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < d->layout->bodies; v++) PetscCall(PetscFree(d->function[v].value));
+  for (PetscInt v = 0; v < d->layout->bodies; v++) PetscCall(PetscFree(d->function[v].P));
   PetscCall(PetscFree(d->function));
   PetscCall(PetscFree(d->pair));
   PetscCall(PetscFree(d->value));
@@ -46,22 +47,24 @@ static PetscReal DistantRemainder(PetscInt n, PetscInt count, const PetscReal Q[
 /* A curve's polynomials, by Gram and Schmidt from x^i y^j, by degree. X[2n] its markers. */
 static PetscErrorCode DistantFunctions(PetscInt n, const PetscReal X[], NearFunctions *own) {
   PetscReal middle[2] = {0, 0}, size = 0, *Q;
+  PetscInt count = 0;
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * n; k++) middle[k % 2] += X[k] / n;
   for (PetscInt k = 0; k < 2 * n; k++) size = PetscMax(size, PetscAbsReal(X[k] - middle[k % 2]));
   PetscCall(PetscMalloc1(MOST * n, &Q));
   for (PetscInt degree = 0; degree <= DEGREE; degree++)
     for (PetscInt i = degree; i >= 0; i--) {
-      PetscReal *f = Q + own->count * n;
+      PetscReal *f = Q + count * n;
       for (PetscInt k = 0; k < n; k++)
         f[k] = PetscPowRealInt((X[2 * k] - middle[0]) / size, (int)i) *
                PetscPowRealInt((X[2 * k + 1] - middle[1]) / size, (int)(degree - i));
-      if (own->count < n && DistantRemainder(n, own->count, Q, f) > NOTHING) own->count++;
+      if (count < n && DistantRemainder(n, count, Q, f) > NOTHING) count++;
     }
-  own->stride = LANES * ((2 * own->count + LANES - 1) / LANES);
-  PetscCall(PetscMalloc1(n * own->count, &own->value));
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt q = 0; q < own->count; q++) own->value[k * own->count + q] = Q[q * n + k];
+  own->stride = LANES * ((2 * count + LANES - 1) / LANES);
+  PetscCall(PetscCalloc1(own->stride * 2 * n, &own->P));
+  for (PetscInt q = 0; q < count; q++)
+    for (PetscInt k = 0; k < n; k++)
+      for (int c = 0; c < 2; c++) own->P[(c * count + q) * 2 * n + 2 * k + c] = Q[q * n + k];
   PetscCall(PetscFree(Q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -73,7 +76,7 @@ PetscErrorCode NearDistantAdd(NearDistant d, const PetscReal X[], PetscInt v, Pe
   PetscFunctionBeginUser;
   for (int end = 0; end < 2; end++) {
     const PetscInt b = body[end];
-    if (!d->function[b].value) PetscCall(DistantFunctions(LayoutCount(l, b), X + 2 * l->start[b], &d->function[b]));
+    if (!d->function[b].P) PetscCall(DistantFunctions(LayoutCount(l, b), X + 2 * l->start[b], &d->function[b]));
   }
   const PetscInt numbers = d->function[v].stride * d->function[w].stride;
   *added = 2 * numbers < 4 * LayoutCount(l, v) * LayoutCount(l, w);
@@ -93,38 +96,17 @@ PetscErrorCode NearDistantMake(NearDistant d) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a[stride] = a curve's polynomials' parts of x, interlaced numbers of n markers. */
-static void DistantParts(const NearFunctions *f, PetscInt n, const PetscReal x[], PetscReal a[]) {
-  (void)PetscArrayzero(a, f->stride);
-  for (PetscInt k = 0; k < n; k++)
-    for (int c = 0; c < 2; c++)
-      for (PetscInt q = 0; q < f->count; q++) a[c * f->count + q] += x[2 * k + c] * f->value[k * f->count + q];
-}
-
-/* x += alpha times the sum of the polynomials with parts a[stride]. */
-static void DistantSum(const NearFunctions *f, PetscInt n, PetscReal alpha, const PetscReal a[], PetscReal x[]) {
-  for (PetscInt k = 0; k < n; k++)
-    for (int c = 0; c < 2; c++) {
-      PetscReal sum = 0;
-      for (PetscInt q = 0; q < f->count; q++) sum += a[c * f->count + q] * f->value[k * f->count + q];
-      x[2 * k + c] += alpha * sum;
-    }
-}
-
 PetscErrorCode NearDistantFill(NearDistant d, PetscInt pair, PetscInt stride, const PetscReal C[]) {
   const NearDistantPair *p = &d->pair[pair];
   const NearFunctions *row = &d->function[p->row], *column = &d->function[p->column];
-  const PetscInt n = LayoutCount(d->layout, p->row), m = LayoutCount(d->layout, p->column);
+  const PetscInt n = 2 * LayoutCount(d->layout, p->row), m = 2 * LayoutCount(d->layout, p->column);
   PetscReal *half, *B;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(column->stride, &half, row->stride * column->stride, &B));
-  for (PetscInt i = 0; i < 2 * n; i++) {
-    DistantParts(column, m, C + i * stride, half);
-    for (PetscInt q = 0; q < row->count; q++)
-      for (PetscInt k = 0; k < column->stride; k++)
-        B[(i % 2 * row->count + q) * column->stride + k] += row->value[i / 2 * row->count + q] * half[k];
-  }
-  for (PetscInt k = 0; k < row->stride * column->stride; k++) d->value[p->at + (size_t)k] = (float)B[k];
+  PetscCall(PetscMalloc2(column->stride * n, &half, column->stride * row->stride, &B));
+  PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){column->P, m, column->stride, m}, (DenseView){C, m, n, stride},
+                               0, half, column->stride)); /* all by columns, where C and B are their transposes */
+  PetscCall(DenseProduct(PETSC_FALSE, column->stride, row->stride, n, half, row->P, B));
+  DenseSingle(row->stride * column->stride, B, d->value + p->at);
   PetscCall(PetscFree2(half, B));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,20 +114,17 @@ PetscErrorCode NearDistantFill(NearDistant d, PetscInt pair, PetscInt stride, co
 PetscErrorCode NearDistantExpand(NearDistant d, PetscInt pair, PetscInt stride, PetscReal C[]) {
   const NearDistantPair *p = &d->pair[pair];
   const NearFunctions *row = &d->function[p->row], *column = &d->function[p->column];
-  const PetscInt n = LayoutCount(d->layout, p->row), m = LayoutCount(d->layout, p->column);
-  PetscReal *half;
+  const PetscInt n = 2 * LayoutCount(d->layout, p->row), m = 2 * LayoutCount(d->layout, p->column);
+  PetscReal *half, *B;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(column->stride, &half));
-  PetscCall(PetscArrayzero(C, 2 * n * stride));
-  for (PetscInt i = 0; i < 2 * n; i++) {
-    PetscCall(PetscArrayzero(half, column->stride));
-    for (PetscInt q = 0; q < row->count; q++)
-      for (PetscInt k = 0; k < column->stride; k++)
-        half[k] += row->value[i / 2 * row->count + q] *
-                   d->value[p->at + (size_t)((i % 2 * row->count + q) * column->stride + k)];
-    DistantSum(column, m, 1, half, C + i * stride);
-  }
-  PetscCall(PetscFree(half));
+  PetscCall(PetscMalloc2(m * row->stride, &half, column->stride * row->stride, &B));
+  for (PetscInt k = 0; k < row->stride * column->stride; k++) B[k] = d->value[p->at + (size_t)k];
+  PetscCall(DenseProduct(PETSC_FALSE, m, row->stride, column->stride, column->P, B, half));
+  PetscCall(PetscArrayzero(C, n * stride));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt q = 0; q < row->stride; q++)
+      for (PetscInt k = 0; k < m; k++) C[i * stride + k] += row->P[q * n + i] * half[q * m + k];
+  PetscCall(PetscFree2(half, B));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,10 +132,12 @@ PetscErrorCode NearDistantApply(NearDistant d, PetscReal alpha, const PetscScala
   const Layout l = d->layout;
   PetscFunctionBeginUser;
   if (!d->pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt v = 0; v < l->bodies; v++)
-    if (d->function[v].value)
-      DistantParts(&d->function[v], LayoutCount(l, v), force + 2 * l->start[v], d->amplitude + d->start[v]);
+  PetscCall(PetscArrayzero(d->amplitude, d->start[l->bodies]));
   PetscCall(PetscArrayzero(d->answer, d->start[l->bodies]));
+  for (PetscInt v = 0; v < l->bodies; v++)
+    if (d->function[v].P)
+      PetscCall(DenseMultAdd(PETSC_TRUE, 2 * LayoutCount(l, v), d->function[v].stride, 1, d->function[v].P,
+                             force + 2 * l->start[v], d->amplitude + d->start[v]));
   for (PetscInt k = 0; k < d->pairs; k++) {
     const NearDistantPair *p = &d->pair[k];
     const PetscInt stride = d->function[p->column].stride, from = d->start[p->column];
@@ -168,7 +149,8 @@ PetscErrorCode NearDistantApply(NearDistant d, PetscReal alpha, const PetscScala
     }
   }
   for (PetscInt v = l->own; v < l->end; v++)
-    if (d->function[v].value)
-      DistantSum(&d->function[v], LayoutCount(l, v), alpha, d->answer + d->start[v], velocity + 2 * LayoutOffset(l, v));
+    if (d->function[v].P)
+      PetscCall(DenseMultAdd(PETSC_FALSE, 2 * LayoutCount(l, v), d->function[v].stride, alpha, d->function[v].P,
+                             d->answer + d->start[v], velocity + 2 * LayoutOffset(l, v)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,10 +1,10 @@
 /* C of two closed obstacles that rest far from one another. It is smooth along both, so a few polynomials of the place
    on each curve hold it (docs/nearfield.md, Distant obstacles):
 
-       C ~ Q_v B Q_w^T,     B = Q_v^T C Q_w,
+       C ~ P_v B P_w^T,     B = P_v^T C P_w,
 
-   Q orthonormal polynomials of a degree of at most 7 at the markers, which are 15 on a circle. A rank has the pairs of
-   its own bodies; a product reads the forces of all, which the caller has gathered.
+   P orthonormal polynomials of a degree of at most 7 at the markers, which are 15 on a circle, in each of the two
+   components. A rank has the pairs of its own bodies; a product reads the forces of all, which the caller has gathered.
 
    Add all pairs, Make, Fill each from its C, then Apply. */
 #pragma once
@@ -13,9 +13,8 @@
 
 /* The polynomials of a curve. */
 typedef struct {
-  PetscInt count;
-  PetscInt stride;  /* numbers of two components, whole vectors: x of all polynomials, y of all, zeros */
-  PetscReal *value; /* [n][count]; NULL: not made yet */
+  PetscInt stride; /* numbers of two components, whole vectors: x of all polynomials, y of all, zeros */
+  PetscReal *P;    /* [stride][2n]; NULL: not made yet */
 } NearFunctions;
 
 /* B of an own curve and one far from it, [stride of the row][stride of the column] in single precision. */
