@@ -63,32 +63,14 @@ PetscErrorCode StateScatter(const StatePart *p, const PetscReal values[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers of each rank's rows, and where they begin; the caller frees both (PetscFree2). */
-static PetscErrorCode RowsOfRanks(Grid g, Field field, PetscInt each, PetscMPIInt **count, PetscMPIInt **first) {
+PetscErrorCode RowsLayout(Grid g, Field field, PetscInt each, Layout *rows) {
+  const PetscInt n = g->all_rows[field];
+  PetscInt *start, *first;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(g->size, count, g->size, first));
-  for (PetscMPIInt r = 0; r < g->size; r++) {
-    const PetscInt rows = r < g->size - 1 ? g->block : g->all_rows[field] - r * g->block;
-    PetscCall(PetscMPIIntCast(each * rows, *count + r));
-    PetscCall(PetscMPIIntCast(each * r * g->block, *first + r));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GatherRows(Grid g, Field field, PetscInt each, const PetscScalar own[], PetscScalar all[]) {
-  PetscMPIInt *count, *first;
-  PetscFunctionBeginUser;
-  PetscCall(RowsOfRanks(g, field, each, &count, &first));
-  PetscCallMPI(MPI_Gatherv(own, count[g->rank], MPIU_SCALAR, all, count, first, MPIU_SCALAR, 0, g->comm));
-  PetscCall(PetscFree2(count, first));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ScatterRows(Grid g, Field field, PetscInt each, const PetscScalar all[], PetscScalar own[]) {
-  PetscMPIInt *count, *first;
-  PetscFunctionBeginUser;
-  PetscCall(RowsOfRanks(g, field, each, &count, &first));
-  PetscCallMPI(MPI_Scatterv(all, count, first, MPIU_SCALAR, own, count[g->rank], MPIU_SCALAR, 0, g->comm));
-  PetscCall(PetscFree2(count, first));
+  PetscCall(PetscMalloc2(n + 1, &start, g->size + 1, &first));
+  for (PetscInt j = 0; j <= n; j++) start[j] = j * each;
+  for (PetscMPIInt r = 0; r <= g->size; r++) first[r] = PetscMin(r * g->block, n);
+  PetscCall(LayoutCreate(g->comm, n, start, first, rows));
+  PetscCall(PetscFree2(start, first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

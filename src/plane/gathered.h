@@ -34,9 +34,6 @@ PETSC_EXTERN PetscErrorCode StateScatter(const StatePart *part, const PetscReal 
 PETSC_EXTERN PetscErrorCode StateShow(Scheme scheme, StatePartName name, PetscReal values[]);
 PETSC_EXTERN PetscErrorCode StateStretch(Scheme scheme, PetscReal stretch[]);
 
-/* GatherRows - all[rows][each] on rank 0 of every rank's rows own[][each] of a field of the grid. ScatterRows - every
-   rank gets its rows of rank 0's. Collective. */
-PETSC_EXTERN PetscErrorCode GatherRows(Grid grid, Field field, PetscInt each, const PetscScalar own[],
-                                       PetscScalar all[]);
-PETSC_EXTERN PetscErrorCode ScatterRows(Grid grid, Field field, PetscInt each, const PetscScalar all[],
-                                        PetscScalar own[]);
+/* RowsLayout - the rows of a field of the grid, `each` numbers in a row, as a layout for LayoutToRank and
+   LayoutFromRank with one number a marker. Not collective. */
+PETSC_EXTERN PetscErrorCode RowsLayout(Grid grid, Field field, PetscInt each, Layout *rows);

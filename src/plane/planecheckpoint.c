@@ -9,15 +9,17 @@
 /* Write or read `each` numbers in every row of a field. */
 static PetscErrorCode CheckpointRows(H5File *file, PetscBool write, const char name[], Grid g, Field field,
                                      PetscInt each, PetscScalar values[]) {
-  const PetscInt rows = g->all_rows[field];
   PetscScalar *all;
+  Layout rows;
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(g->rank ? 0 : rows * each, &all)); /* zero where nothing can be read */
-  if (write) PetscCall(GatherRows(g, field, each, values, all));
-  H5BeginEntry(file, write, name, 2, (PetscInt[]){rows, each});
-  H5Transfer(file, write, name, 0, rows * each, all);
-  if (!write) PetscCall(ScatterRows(g, field, each, all, values));
+  PetscCall(RowsLayout(g, field, each, &rows));
+  PetscCall(PetscCalloc1(g->rank ? 0 : rows->M, &all)); /* zero where nothing can be read */
+  if (write) PetscCall(LayoutToRank(rows, 0, 1, values, all));
+  H5BeginEntry(file, write, name, 2, (PetscInt[]){rows->bodies, each});
+  H5Transfer(file, write, name, 0, rows->M, all);
+  if (!write) PetscCall(LayoutFromRank(rows, 0, 1, all, values));
   PetscCall(PetscFree(all));
+  PetscCall(LayoutDestroy(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -159,12 +159,15 @@ PetscErrorCode PlaneFrame(void *plane, AppendedFile *file) {
   const PetscBool wrapped = PlaneIsWrapped(s), moving = SceneObstaclesMove(&s->scene->obstacles);
   PetscReal gradient;
   PetscInt k = 0;
+  Layout rows;
   PetscFunctionBeginUser;
   PetscCall(CellFields(s, p->cells[0], p->cells[1], p->cells[2]));
+  PetscCall(RowsLayout(s->fluid->grid, FIELD_P, s->fluid->grid->n[0], &rows));
   for (; k < 3; k++) {
-    PetscCall(GatherRows(s->fluid->grid, FIELD_P, s->fluid->grid->n[0], p->cells[k], p->shown));
+    PetscCall(LayoutToRank(rows, 0, 1, p->cells[k], p->shown));
     AppendedSet(file, k, p->shown);
   }
+  PetscCall(LayoutDestroy(&rows));
   for (int name = 0; name <= STATE_SOLIDS; name++) {
     const StatePart part = StatePartOf(s, &s->state, (StatePartName)name);
     if (!part.n) continue;
