@@ -67,7 +67,7 @@ static PetscErrorCode StreamSetUp(Stream s) {
   const PetscReal h2 = PetscSqr(f->grid->h), nu = f->nu;
   PetscFunctionBeginUser;
   PetscCall(SlabsReserve(s->slabs));
-  if (s->mean) PetscCall(TridiagonalReserve(s->mean));
+  if (s->mean) PetscCall(SlabsReserve(s->mean->slabs));
   if (s->alpha == f->alpha) PetscFunctionReturn(PETSC_SUCCESS);
   s->alpha = f->alpha;
   for (PetscInt k = s->side ? 0 : 2; k < factors->modes; k++) { /* where x is periodic mode 0 is the mean flow */

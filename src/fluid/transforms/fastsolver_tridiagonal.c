@@ -19,7 +19,7 @@ static PetscErrorCode Solve_Tridiagonal(FastSolver s, const PetscScalar b[], Pet
   Solver *q = (Solver *)s->data;
   const PetscInt rows = s->grid->rows[s->field], columns = s->grid->columns[s->field];
   PetscFunctionBeginUser;
-  PetscCall(TridiagonalReserve(q->d));
+  PetscCall(SlabsReserve(q->d->slabs));
   for (PetscInt j = 0; j < rows; j++) {
     RowTransformForward(q->t, b + j * columns);
     TridiagonalUp(q->d, j, q->t->modes);

@@ -31,7 +31,8 @@ struct _p_Slabs {
 PETSC_EXTERN PetscErrorCode SlabsCreate(ModeFactors factors, Slabs *slabs);
 PETSC_EXTERN PetscErrorCode SlabsDestroy(Slabs *slabs);
 
-/* SlabsReserve - make y, once, of zeros. Not collective. */
+/* SlabsReserve - make y, once, of zeros, before the first solve: a solver that is never used has none. Not collective.
+ */
 PETSC_EXTERN PetscErrorCode SlabsReserve(Slabs slabs);
 
 /* SlabsStore - row j of y is stored in its first blocks of modes. Not collective. */

@@ -2,10 +2,6 @@
 
 #define NEGLIGIBLE 43. /* e^-43 = 2e-19: what comes in from that far is lost in rounding */
 
-PetscErrorCode TridiagonalReserve(Tridiagonal d) {
-  return SlabsReserve(d->slabs);
-}
-
 void TridiagonalUp(Tridiagonal d, PetscInt j, const PetscReal b[]) {
   const Slabs s = d->slabs;
   const PetscReal *restrict r = d->factors->r[0], *restrict from = b;

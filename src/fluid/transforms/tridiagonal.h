@@ -13,7 +13,7 @@
    The zero mode of a singular problem has r = 1, so that nothing decays: every rank has its whole column of right-hand
    sides and solves it.
 
-   A solve: Reserve, Up for rows 0, 1, .., End, Down for the last row, the one below it, .. */
+   A solve: SlabsReserve, Up for rows 0, 1, .., End, Down for the last row, the one below it, .. */
 #pragma once
 #include "fluid/transforms/slabs.h"
 
@@ -35,9 +35,6 @@ PETSC_EXTERN PetscErrorCode TridiagonalDestroy(Tridiagonal *d);
 /* TridiagonalSetCoefficients - a0 (1/time) and nu (length^2/time) of one sign; singular: mode 0 has no inverse, the
    mean of its solution is set to zero. Not collective. Errors: signs that differ. */
 PETSC_EXTERN PetscErrorCode TridiagonalSetCoefficients(Tridiagonal d, PetscReal a0, PetscReal nu, PetscBool singular);
-
-/* TridiagonalReserve - make the rows of y, once, before the first Up: a solver that is never used has none. */
-PETSC_EXTERN PetscErrorCode TridiagonalReserve(Tridiagonal d);
 
 /* TridiagonalUp - row j's right-hand side b[modes], rows in order. TridiagonalDown - row j's solution x[modes], rows in
    reverse. Not collective. TridiagonalEnd - what comes into every slab, between them. Collective. */
