@@ -8,13 +8,6 @@ static const NearLevel *ContactLevel(NearPair pair, PetscReal range) {
   return k > 0 ? &pair->level[k] : NULL;
 }
 
-static PetscReal NearEntryDistance2(const NearLevel *l, const NearEntry *e) {
-  const NearPatch *a = &l->patch[0], *b = &l->patch[1];
-  PetscReal r2 = 0;
-  for (int q = 0; q < 3; q++) r2 += PetscSqr(a->X[q * a->n + e->i] - b->X[q * b->n + e->j]);
-  return r2;
-}
-
 /* Areas of the points of a patch. */
 static PetscErrorCode ContactAreas(const NearPatch *p, PetscInt count, const PetscReal J[], PetscReal area[]) {
   PetscFunctionBeginUser;
@@ -51,11 +44,11 @@ PetscErrorCode Contact3Create(const Contact3Law *law, NearPair pair, const Petsc
   PetscCall(PetscMalloc2(a->n, &area[0], b->n, &area[1]));
   PetscCall(ContactAreas(a, pair->sphere->count, J1, area[0]));
   PetscCall(ContactAreas(b, pair->sphere->count, J2, area[1]));
-  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance2(l, &l->entry[STOKESLET][k]) < reach * reach;
+  for (PetscInt k = 0; k < l->entries; k++) room += NearEntryDistance(l, &l->entry[STOKESLET][k]) < reach;
   PetscCall(PetscMalloc1(room, &c->entry));
   for (PetscInt k = 0; k < l->entries; k++) {
     const NearEntry *e = &l->entry[STOKESLET][k];
-    const PetscReal r = PetscSqrtReal(NearEntryDistance2(l, e)), both = area[0][e->i] * area[1][e->j];
+    const PetscReal r = NearEntryDistance(l, e), both = area[0][e->i] * area[1][e->j];
     if (r >= reach) continue;
     NearEntry *own = &c->entry[c->entries++];
     c->energy += both * ContactLaw(law, r, own);

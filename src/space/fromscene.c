@@ -11,21 +11,6 @@ static PetscErrorCode SceneFlow3(const void *flow, PetscReal t, PetscInt n, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* X[count][size] of the first shapes. */
-static PetscErrorCode SceneFirstFields(Scene s, PetscReal X[]) {
-  const PetscInt whole = 3 * HarmonicsCount(s->space.degree);
-  Sphere revolved;
-  PetscFunctionBeginUser;
-  if (s->dim != DIM_AXIAL) {
-    PetscCall(PetscArraycpy(X, s->space.X, s->vesicles.count * whole));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(SphereCreate(s->space.degree, SPHERE_REVOLVED, &revolved));
-  for (PetscInt v = 0; v < s->vesicles.count; v++) SphereFold(revolved, s->space.X + v * whole, X + v * revolved->size);
-  PetscCall(SphereDestroy(&revolved));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* That a vesicle of its area and volume has a shape that fits into the tube: with the radius R_A of the sphere of this
    area, rho = R/R_A must be above the root of rho^3 - 3 rho + 2v = 0, which a cylinder with round ends has. */
 static PetscErrorCode SpaceCheckPassage(Scene s, Space space) {
@@ -113,11 +98,9 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                            .length = s->space.tube.throat_length,
                                            .mouth = s->space.tube.throat_mouth}};
   Vesicle3Setting *material;
-  PetscReal *X;
   PetscFunctionBeginUser;
   PetscCall(SceneReport(s));
-  PetscCall(PetscMalloc2(count, &material, count * 3 * HarmonicsCount(p), &X));
-  PetscCall(SceneFirstFields(s, X));
+  PetscCall(PetscMalloc1(count, &material));
   for (PetscInt v = 0; v < count; v++) {
     material[v] = (Vesicle3Setting){.nu = s->fluid.nu,
                                     .bending = ListEntry(&s->membrane.stiffness, 1, v, 0),
@@ -125,8 +108,8 @@ PetscErrorCode SpaceFromScene(Scene s, Space *space) {
                                     .ratio = SceneViscosityRatio(s, v)};
     for (int d = 0; d < 3; d++) material[v].weight[d] = SceneWeight(s, v, d);
   }
-  PetscCall(SpaceCreate(s->comm, &setting, count, material, X, space));
-  PetscCall(PetscFree2(material, X));
+  PetscCall(SpaceCreate(s->comm, &setting, count, material, s->space.X, space));
+  PetscCall(PetscFree(material));
   PetscCall(SpaceCheckTube(s, *space));
   if (!(*space)->cross) PetscFunctionReturn(PETSC_SUCCESS);
   const CrossLayer cross = (*space)->cross;

@@ -105,10 +105,10 @@ static void NearDistances(const NearPatch *p, const PetscReal x[3], PetscReal r2
     r2[j] = PetscSqr(p->X[j] - x[0]) + PetscSqr(p->X[p->n + j] - x[1]) + PetscSqr(p->X[2 * p->n + j] - x[2]);
 }
 
-/* Distances of the points to the other patch, the least one, and room for entries of each pair within reach. */
-static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscInt kernels, PetscReal reach, PetscReal *least) {
+/* Distances of the points to the other patch, the least one, and entries of each pair within reach. */
+static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscReal reach, PetscReal *least) {
   const NearPatch *a = &l->patch[0], *b = &l->patch[1];
-  PetscInt pairs = 0;
+  PetscInt room = 0;
   PetscReal *r2;
   PetscFunctionBeginUser;
   l->reach = reach;
@@ -121,15 +121,26 @@ static PetscErrorCode NearLevelMeasure(NearLevel *l, PetscInt kernels, PetscReal
     for (PetscInt j = 0; j < b->n; j++) {
       nearest = PetscMin(nearest, r2[j]);
       b->distance[j] = PetscMin(b->distance[j], r2[j]);
-      pairs += r2[j] < reach * reach;
     }
     a->distance[i] = PetscSqrtReal(nearest);
     *least = PetscMin(*least, a->distance[i]);
+    if (room < l->entries + b->n) {
+      room = 2 * (l->entries + b->n);
+      PetscCall(PetscRealloc(room * sizeof(NearEntry), &l->entry[STOKESLET]));
+    }
+    for (PetscInt j = 0; j < b->n && nearest < reach * reach; j++)
+      if (r2[j] < reach * reach) l->entry[STOKESLET][l->entries++] = (NearEntry){.i = i, .j = j};
   }
   for (PetscInt j = 0; j < b->n; j++) b->distance[j] = PetscSqrtReal(b->distance[j]);
   PetscCall(PetscFree(r2));
-  for (PetscInt q = 0; q < kernels; q++) PetscCall(PetscMalloc1(pairs, &l->entry[q]));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal NearEntryDistance(const NearLevel *l, const NearEntry *e) {
+  const NearPatch *a = &l->patch[0], *b = &l->patch[1];
+  PetscReal r2 = 0;
+  for (int q = 0; q < 3; q++) r2 += PetscSqr(a->X[q * a->n + e->i] - b->X[q * b->n + e->j]);
+  return PetscSqrtReal(r2);
 }
 
 /* The factors += scale times those of L(width), or its stresslet, at the distance r. */
@@ -144,29 +155,20 @@ static void NearAddShort(const NearTables *t, PetscInt kernel, PetscReal scale, 
   e->b += over / (r * r) * (along[0] + part * (along[1] - along[0]));
 }
 
-/* The entries of each kernel: scale L(width) - L(less), where `less` is not 0. */
+/* The factors of each kernel: scale L(width) - L(less), where `less` is not 0. */
 static PetscErrorCode NearLevelFill(NearLevel *l, const NearTables *t, PetscReal scale, PetscReal width,
                                     PetscReal less) {
-  const NearPatch *a = &l->patch[0], *b = &l->patch[1];
-  const PetscReal reach = REACH * width;
-  PetscReal *r2;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(b->n, &r2));
-  for (PetscInt i = 0; i < a->n; i++) {
-    if (a->distance[i] >= reach) continue;
-    NearDistances(b, (PetscReal[]){a->X[i], a->X[a->n + i], a->X[2 * a->n + i]}, r2);
-    for (PetscInt j = 0; j < b->n; j++) {
-      if (r2[j] >= reach * reach) continue;
-      for (PetscInt q = 0; q < t->kernels; q++) {
-        NearEntry *e = &l->entry[q][l->entries];
-        *e = (NearEntry){.i = i, .j = j};
-        NearAddShort(t, q, scale, width, PetscSqrtReal(r2[j]), e);
-        if (less > 0) NearAddShort(t, q, -scale, less, PetscSqrtReal(r2[j]), e);
-      }
-      l->entries++;
-    }
+  if (t->kernels > STRESSLET) {
+    PetscCall(PetscMalloc1(l->entries, &l->entry[STRESSLET]));
+    PetscCall(PetscArraycpy(l->entry[STRESSLET], l->entry[STOKESLET], l->entries));
   }
-  PetscCall(PetscFree(r2));
+  for (PetscInt q = 0; q < t->kernels; q++)
+    for (NearEntry *e = l->entry[q]; e < l->entry[q] + l->entries; e++) {
+      const PetscReal r = NearEntryDistance(l, e);
+      NearAddShort(t, q, scale, width, r, e);
+      if (less > 0) NearAddShort(t, q, -scale, less, r, e);
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,7 +183,7 @@ PetscErrorCode NearPairCreate(Sphere sphere, NearTables *t, PetscReal spacing, c
   pair->sphere = sphere;
   pair->levels = 1;
   for (int side = 0; side < 2; side++) PetscCall(NearPatchWhole(sphere, t, c[side], &pair->level[0].patch[side]));
-  PetscCall(NearLevelMeasure(&pair->level[0], t->kernels, REACH * width, &least));
+  PetscCall(NearLevelMeasure(&pair->level[0], REACH * width, &least));
   PetscCall(NearLevelFill(&pair->level[0], t, -1, width, 0));
   PetscBool last = (PetscBool)(least > REACH * width);
   for (PetscInt k = 1; !last; k++, spacing /= 2, width /= 2) {
@@ -192,7 +194,7 @@ PetscErrorCode NearPairCreate(Sphere sphere, NearTables *t, PetscReal spacing, c
       PetscCall(NearPatchRefine(sphere, t, &before->patch[side], REACH * width + CELL * spacing, k, c[side],
                                 &l->patch[side]));
     pair->levels = k + 1;
-    PetscCall(NearLevelMeasure(l, t->kernels, REACH * width, &least));
+    PetscCall(NearLevelMeasure(l, REACH * width, &least));
     last = (PetscBool)(k == NEAR_LEVELS - 1 || least > REACH * width / 2);
     PetscCall(NearLevelFill(l, t, 1, width, last ? 0 : width / 2));
   }

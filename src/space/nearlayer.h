@@ -73,10 +73,11 @@ PETSC_EXTERN PetscErrorCode NearTablesDestroy(NearTables *tables);
 PETSC_EXTERN PetscReal NearReach(PetscReal spacing);
 
 /* NearPairCreate - of the surfaces c1[3][count] and c2[3][count].
-   NearPairAdd - U[side][3][count] += the velocities by the forces or velocities F[side][3][count] on the other surface;
-   U[side] NULL: not wanted. Not collective. Errors: memory. */
+   NearEntryDistance - of the two points. NearPairAdd - U[side][3][count] += the velocities by the forces or velocities
+   F[side][3][count] on the other surface; U[side] NULL: not wanted. Not collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode NearPairCreate(Sphere sphere, NearTables *tables, PetscReal spacing, const PetscReal c1[],
                                            const PetscReal c2[], NearPair *pair);
+PETSC_EXTERN PetscReal NearEntryDistance(const NearLevel *level, const NearEntry *entry);
 PETSC_EXTERN PetscErrorCode NearPairDestroy(NearPair *pair);
 PETSC_EXTERN PetscErrorCode NearPairAdd(NearPair pair, NearKernel kernel, const PetscReal *const F[2],
                                         PetscReal *const U[2]);

@@ -219,6 +219,14 @@ PetscErrorCode SpaceIterate(Space s, PetscReal a0, PetscReal *moved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* V = u_inf - M F, with the double layers of U. */
+static PetscErrorCode SpaceFlow(Space s) {
+  PetscFunctionBeginUser;
+  PetscCall(SpaceMobility(s, s->work.F, s->work.U, s->work.V));
+  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* b = targets - rows of the velocity u_inf - M known, which V becomes; or the targets and this velocity. */
 static PetscErrorCode SpaceRightHandSide(Space s) {
   const PetscInt n = s->size + s->count;
@@ -228,8 +236,7 @@ static PetscErrorCode SpaceRightHandSide(Space s) {
   for (PetscInt v = 0; v < s->share.own; v++)
     PetscCall(PetscArraycpy(s->work.F + v * s->size, s->vesicle[v]->known, s->size));
   PetscCall(PetscArrayzero(s->work.U, s->share.own * s->size));
-  PetscCall(SpaceMobility(s, s->work.F, s->work.U, s->work.V));
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
+  PetscCall(SpaceFlow(s));
   PetscCall(PetscMalloc1(n, &y));
   PetscCall(VecGetArrayWrite(s->b, &all));
   for (PetscInt v = 0; v < s->share.own; v++) {
@@ -259,19 +266,16 @@ static PetscErrorCode SpaceVelocities(Space s) {
   PetscCall(VecRestoreArrayRead(s->x, &x));
   for (PetscInt v = 0; v < s->share.own; v++)
     for (PetscInt k = 0; k < s->size; k++) s->work.F[v * s->size + k] += s->vesicle[v]->known[k];
-  PetscCall(SpaceMobility(s, s->work.F, s->work.U, s->work.V));
-  for (PetscInt k = 0; k < s->share.own * s->size; k++) s->work.V[k] = s->work.background[k] - s->work.V[k];
+  PetscCall(SpaceFlow(s));
   if (s->tube.tube) PetscCall(SpaceMeasureThrust(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SpaceSolve(Space s, PetscInt pass) {
+PetscErrorCode SpaceSolve(Space s, PetscReal a0, PetscInt pass) {
   KSPConvergedReason why;
   PetscInt its;
-  PetscReal residual, a0 = 0;
+  PetscReal residual;
   PetscFunctionBeginUser;
-  if (s->share.own) a0 = s->vesicle[0]->a0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &a0, 1, MPIU_REAL, MPI_MAX, s->share.comm));
   if (!pass) PetscCall(SpaceRenewFactors(s, a0));
   if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpaceRightHandSide(s));

@@ -39,17 +39,17 @@ PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt 
   for (PetscInt v = 0; v < vesicles; v++) s->contrast = (PetscBool)(s->contrast || material[v].ratio != 1);
   s->unknowns = s->size + s->count + (vesicles > 1 && s->contrast ? s->size : 0);
   PetscCall(PetscCalloc1(s->share.own, &s->vesicle));
-  for (PetscInt v = 0; v < s->share.own; v++)
-    PetscCall(
-        Vesicle3Create(s->sphere, &material[s->share.first + v], X + (s->share.first + v) * s->size, &s->vesicle[v]));
   PetscCall(SpaceStateCreate(s, &s->state));
+  for (PetscInt v = 0; v < s->share.own; v++) {
+    SphereFold(s->sphere, X + (first + v) * 3 * HarmonicsCount(setting->p), s->state.X + v * s->size);
+    PetscCall(Vesicle3Create(s->sphere, &material[first + v], s->state.X + v * s->size, &s->vesicle[v]));
+  }
   PetscCall(SpaceStateCreate(s, &s->start));
   PetscCall(SpaceStateCreate(s, &s->work.star));
   for (int j = 0; j < BDF_MOST - 1; j++) PetscCall(SpaceStateCreate(s, &s->old[j]));
   const PetscInt n = s->share.own * s->size;
   PetscCall(PetscMalloc6(n, &s->work.Xhat, n, &s->work.Y, n, &s->work.background, n, &s->work.F, n, &s->work.V, n,
                          &s->work.U));
-  PetscCall(PetscArraycpy(s->state.X, X + s->share.first * s->size, n));
   s->order = PetscMin(setting->order, 2);
   s->plan.level = StepFirstLevel();
   if (vesicles > 1)
@@ -236,7 +236,7 @@ static PetscErrorCode SpaceAttempt(Space s, PetscReal dt) {
       PetscCall(Vesicle3Linearise(s->vesicle[v], b.a0, s->work.Xhat + at, s->work.star.X + at, s->work.Y + at));
     }
     if (s->cross) PetscCall(SpaceAddContact(s));
-    PetscCall(SpaceSolve(s, pass));
+    PetscCall(SpaceSolve(s, b.a0, pass));
     if (*s->report.failure) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(SpaceIterate(s, b.a0, &moved));
     s->report.estimate = pass ? s->report.estimate : moved;

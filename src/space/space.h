@@ -108,8 +108,8 @@ struct _p_Space {
   SpaceFactors made;
 };
 
-/* SpaceCreate - vesicles of the shapes X[vesicles][size] with their materials [vesicles] at time 0. Collective.
-   Errors: memory. */
+/* SpaceCreate - vesicles of the shapes X[vesicles][3 HarmonicsCount(p)], on whole spheres, with their materials
+   [vesicles] at time 0. Collective. Errors: memory. */
 PETSC_EXTERN PetscErrorCode SpaceCreate(MPI_Comm comm, const SpaceSetting *setting, PetscInt vesicles,
                                         const Vesicle3Setting material[], const PetscReal X[], Space *space);
 PETSC_EXTERN PetscErrorCode SpaceDestroy(Space *space);
@@ -150,8 +150,8 @@ PETSC_EXTERN PetscErrorCode SpaceGuess(Space space, PetscReal a0);
 PETSC_EXTERN PetscErrorCode SpaceIterate(Space space, PetscReal a0, PetscReal *moved);
 
 /* SpaceSolverCreate - the solver of a space, which SpaceSolve asks for x; SpaceSolve - solve for x about Y, with x as
-   the first guess, in one of the Newton steps of a time step, of which the first may make new factors, and set V to the
-   vesicles' velocities; report.failure says so when it fails. Collective. */
+   the first guess, in one of the Newton steps of a step with a0, of which the first may make new factors, and set V to
+   the vesicles' velocities; report.failure says so when it fails. Collective. */
 PETSC_EXTERN PetscErrorCode SpaceSolverCreate(Space space);
 PETSC_EXTERN PetscErrorCode SpaceSolverDestroy(Space space);
-PETSC_EXTERN PetscErrorCode SpaceSolve(Space space, PetscInt pass);
+PETSC_EXTERN PetscErrorCode SpaceSolve(Space space, PetscReal a0, PetscInt pass);

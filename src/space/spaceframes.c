@@ -1,25 +1,22 @@
 /* Surfaces at the saved times, in run.h5 and run.xmf. */
 #include "base/version.h"
+#include "numerics/blas.h"
 #include "output/xdmf.h"
 #include "space/spacemodel.h"
 
 /* Harmonics at the points of a vesicle: the grid of degree p, then both poles. */
 PetscErrorCode SpaceFramesPoints(SpaceModel m) {
-  const PetscInt p = m->space->sphere->p;
-  PetscReal *theta, *phi;
+  const PetscInt p = m->space->sphere->p, count = HarmonicsCount(p);
+  const PetscReal pole[2] = {0, PETSC_PI}, zero = 0;
   SphereGrid g;
   PetscFunctionBeginUser;
   PetscCall(SphereGridCreate(p, GRID_WHOLE, &g));
   m->points = g.n + 2;
-  PetscCall(PetscMalloc2(HarmonicsCount(p) * m->points, &m->Y, m->space->share.vesicles + 1, &m->first));
+  PetscCall(PetscMalloc2(count * m->points, &m->Y, m->space->share.vesicles + 1, &m->first));
   for (PetscInt v = 0; v <= m->space->share.vesicles; v++) m->first[v] = v * m->points;
-  PetscCall(PetscMalloc2(m->points, &theta, m->points, &phi));
-  PetscCall(PetscArraycpy(theta, g.theta, g.n));
-  PetscCall(PetscArraycpy(phi, g.phi, g.n));
-  theta[g.n] = phi[g.n] = phi[g.n + 1] = 0;
-  theta[g.n + 1] = PETSC_PI;
-  PetscCall(HarmonicsAt(p, m->points, theta, phi, 1, m->Y));
-  PetscCall(PetscFree2(theta, phi));
+  for (PetscInt i = 0; i < m->points; i++)
+    PetscCall(
+        HarmonicsAt(p, p, 1, i < g.n ? &g.theta[i] : &pole[i - g.n], i < g.n ? &g.phi[i] : &zero, 1, m->Y + i * count));
   PetscCall(SphereGridDestroy(&g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,12 +102,9 @@ PetscErrorCode SpaceGather(void *model, ModelPart part, PetscReal y[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->share.vesicles * fields * count, &c));
   PetscCall(SpaceGatherWhole(s, part, c));
-  PetscCall(PetscArrayzero(y, s->share.vesicles * fields * m->points));
   for (PetscInt v = 0; v < s->share.vesicles; v++)
-    for (PetscInt f = 0; f < fields; f++)
-      for (PetscInt k = 0; k < count; k++)
-        for (PetscInt i = 0; i < m->points; i++)
-          y[(v * m->points + i) * fields + f] += c[(v * fields + f) * count + k] * m->Y[k * m->points + i];
+    PetscCall(
+        DenseProduct(PETSC_TRUE, fields, m->points, count, c + v * fields * count, m->Y, y + v * m->points * fields));
   PetscCall(PetscFree(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

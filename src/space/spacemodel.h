@@ -54,7 +54,7 @@ struct _p_SpaceModel {
   PetscInt columns;                    /* of series.csv */
   PetscInt points;                     /* of a vesicle in frames */
   PetscInt *first;                     /* [vesicles + 1] first point of each */
-  PetscReal *Y;                        /* [count][points] harmonics there */
+  PetscReal *Y;                        /* [points][count] harmonics there */
   char warning[2][PETVES_MAX_MESSAGE]; /* that harmonics do not resolve a shape, or a film; empty: none */
 };
 

@@ -91,17 +91,15 @@ PetscErrorCode SpaceAddTube(Space s, NearKernel kernel, const PetscReal F[], Pet
 }
 
 PetscErrorCode SpaceMeasureThrust(Space s) {
-  PetscReal sum = 0, part, *on_fluid;
+  const PetscInt size = s->size, each = size * TubeRowCount(s->tube.tube);
+  PetscReal sum = 0;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->size, &on_fluid));
   for (PetscInt v = 0; v < s->share.own; v++) {
-    for (PetscInt k = 0; k < s->size; k++) on_fluid[k] = -s->work.F[v * s->size + k];
-    PetscCall(TubeThrust(s->tube.tube, s->vesicle[v]->at, s->vesicle[v]->setting.ratio, on_fluid,
-                         s->work.V + v * s->size, &part));
-    sum += part;
-    for (PetscInt k = 0; k < s->size && s->tube.throat; k++) sum += on_fluid[k] * s->tube.flow[v * s->size + k];
+    const PetscReal ratio = s->vesicle[v]->setting.ratio, *F = s->work.F + v * size, *V = s->work.V + v * size;
+    sum -= TubeThrust(s->tube.tube, size, s->tube.wall + v * each, F);
+    if (ratio != 1) sum += (1 - ratio) * TubeThrust(s->tube.tube, size, s->tube.traction + v * each, V);
+    for (PetscInt k = 0; k < size && s->tube.throat; k++) sum -= F[k] * s->tube.flow[v * size + k];
   }
-  PetscCall(PetscFree(on_fluid));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, s->share.comm));
   s->tube.thrust = sum / s->tube.left;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -81,7 +81,8 @@ PetscErrorCode ThroatDestroy(Throat *throat) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscReal ThroatRadius(Throat t, PetscReal x, PetscReal *slope) {
+/* R(x), and dR/dx where slope is not NULL. */
+static PetscReal ThroatRadius(Throat t, PetscReal x, PetscReal *slope) {
   const ThroatSetting *s = &t->setting;
   const PetscReal R = t->tube->setting.radius, from = x - s->center, out = PetscAbsReal(from) - s->length / 2,
                   turn = PETSC_PI * PetscClipInterval(out / s->mouth, 0, 1), half = (R - s->radius) / 2;
@@ -178,7 +179,6 @@ static PetscErrorCode ThroatSolve(Throat t, PetscInt columns, PetscReal x[], Pet
 /* T, L and answer of the rings in the tube. */
 static PetscErrorCode ThroatMakeFactor(Throat t) {
   const PetscInt n = t->n, waves = t->tube->waves;
-  const PetscReal R = t->tube->setting.radius;
   PetscBLASInt size, info;
   PetscReal *own;
   PetscFunctionBeginUser;
@@ -190,14 +190,11 @@ static PetscErrorCode ThroatMakeFactor(Throat t) {
   ThroatStokeslets(t, n, t->X, PETSC_TRUE, t->L);
   PetscCall(DenseProductWithin(PETSC_TRUE, (DenseView){t->T, waves, 2 * n, waves},
                                (DenseView){own, waves, 2 * n, waves}, 1, t->L, 2 * n));
+  for (PetscInt k = 0; k < 2 * n; k++) t->answer[k] = -own[(k + 1) * waves - 1];
   PetscCall(PetscFree(own));
   PetscCall(PetscBLASIntCast(2 * n, &size));
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &size, t->L, &size, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the mobility of a throat's rings is not positive definite");
-  for (PetscInt i = 0; i < n; i++) {
-    t->answer[i] = -2 * (1 - PetscSqr(t->X[n + i] / R));
-    t->answer[n + i] = 0;
-  }
   PetscCall(ThroatSolve(t, 1, t->answer, 2 * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

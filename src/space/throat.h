@@ -22,14 +22,12 @@ typedef struct {
 
 typedef struct _p_Throat *Throat;
 
-/* ThroatCreate - of a tube, whose rows T it will extend; the tube is borrowed. ThroatRadius - R(x), and dR/dx where
-   slope is not NULL. ThroatMeasure - the film of a body of revolution that has been placed, as TubeMeasure.
-   ThroatLeastFilm: thinner films take more rings than there may be. ThroatPlace - the tube's nodes and rings
-   (TubePlace), and rings of the throat no farther apart than the film. Not collective. Errors: memory; matrices that
-   are not positive definite. */
+/* ThroatCreate - of a tube, whose rows T it will extend; the tube is borrowed. ThroatMeasure - the film of a body of
+   revolution that has been placed, as TubeMeasure. ThroatLeastFilm: thinner films take more rings than there may be.
+   ThroatPlace - the tube's nodes and rings (TubePlace), and rings of the throat no farther apart than the film. Not
+   collective. Errors: memory; matrices that are not positive definite. */
 PETSC_EXTERN PetscErrorCode ThroatCreate(const ThroatSetting *setting, Tube tube, Throat *throat);
 PETSC_EXTERN PetscErrorCode ThroatDestroy(Throat *throat);
-PETSC_EXTERN PetscReal ThroatRadius(Throat throat, PetscReal x, PetscReal *slope);
 PETSC_EXTERN void ThroatMeasure(Throat throat, Surface surface, TubeExtent *extent);
 PETSC_EXTERN PetscReal ThroatLeastFilm(Throat throat);
 PETSC_EXTERN PetscErrorCode ThroatPlace(Throat throat, PetscInt p, const TubeExtent *extent);

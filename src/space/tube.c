@@ -172,13 +172,6 @@ void TubeMeasure(Tube t, Surface s, TubeExtent *extent) {
   extent->film = PetscMin(extent->film, extent->gap);
 }
 
-/* The traction over the viscosity of the flow of mean velocity 1, along x and r, at a distance x from where its
-   pressure is 0. */
-static void TubeDrivenTraction(PetscReal R, PetscReal x, PetscReal r, const PetscReal normal[2],
-                               PetscReal traction[2]) {
-  for (int d = 0; d < 2; d++) traction[d] = (8 * x * normal[d] - 4 * r * normal[1 - d]) / (R * R);
-}
-
 /* The two rows of a wave P cos(kx) + Q sin(kx), a quarter of a wave apart; c, s: cos and sin. */
 static inline void TubeWave(PetscReal c, PetscReal s, PetscReal P, PetscReal Q, PetscReal row[2]) {
   row[0] = c * P + s * Q;
@@ -186,9 +179,8 @@ static inline void TubeWave(PetscReal c, PetscReal s, PetscReal P, PetscReal Q, 
 }
 
 void TubeRings(Tube t, PetscInt n, const PetscReal X[], const PetscReal normals[], PetscReal rings[]) {
-  const PetscReal R = t->setting.radius, P = t->setting.period;
+  const PetscReal R = t->setting.radius;
   const PetscInt rows = t->waves;
-  const PetscReal driven = P > 0 ? PetscSqrtReal(1 / (8 * PETSC_PI * t->nu * P)) : 0;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal r = X[n + i];
     const PetscReal normal[2] = {normals ? normals[i] : 0, normals ? normals[n + i] : 0};
@@ -211,10 +203,11 @@ void TubeRings(Tube t, PetscInt n, const PetscReal X[], const PetscReal normals[
                  across + 4 * j + 2 * wall);
       }
     }
-    PetscReal flow[2] = {2 * (1 - r * r / (R * R)), 0};
-    if (normals) TubeDrivenTraction(R, X[i] - X[0], r, normal, flow);
-    along[rows - 1] = driven * flow[0];
-    across[rows - 1] = driven * flow[1];
+    PetscReal flow[2] = {2 * (1 - r * r / (R * R)), 0}; /* u_1 */
+    for (int d = 0; d < 2 && normals; d++) /* its traction over the viscosity, with no pressure at the first ring */
+      flow[d] = (8 * (X[i] - X[0]) * normal[d] - 4 * r * normal[1 - d]) / (R * R);
+    along[rows - 1] = flow[0];
+    across[rows - 1] = flow[1];
   }
 }
 
@@ -259,8 +252,9 @@ PetscErrorCode TubeFactor(Tube t, const PetscReal c[], PetscReal T[], PetscReal 
 
 void TubeSignRows(Tube t, PetscInt rows, PetscInt columns, PetscReal scale, const PetscReal a[],
                   PetscReal signed_rows[]) {
-  for (PetscInt k = 0; k < columns * rows; k++) /* the wall holds fluid back, and a given pressure drop lets it go */
-    signed_rows[k] = k % rows == t->waves - 1 ? scale * a[k] : -scale * a[k];
+  const PetscReal P = t->setting.period, driven = P > 0 ? 1 / (8 * PETSC_PI * t->nu * P) : 0;
+  for (PetscInt k = 0; k < columns * rows; k++)
+    signed_rows[k] = (k % rows == t->waves - 1 ? driven : -1) * scale * a[k];
 }
 
 PetscErrorCode TubeAddProduct(Tube t, PetscInt size, const PetscReal T[], PetscReal scale, const PetscReal A[],
@@ -276,24 +270,8 @@ PetscErrorCode TubeAddProduct(Tube t, PetscInt size, const PetscReal T[], PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TubeThrust(Tube t, Surface s, PetscReal ratio, const PetscReal F[], const PetscReal U[],
-                          PetscReal *thrust) {
-  const SphereTable *table = &s->sphere->fine;
-  const PetscReal *x = s->D[HARMONIC], *r = x + s->n;
-  PetscReal *f, *u;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(3 * s->n, &f, 3 * s->n, &u));
-  PetscCall(SphereFieldValues(table, HARMONIC, F, f));
-  PetscCall(SphereFieldValues(table, HARMONIC, U, u));
-  *thrust = 0;
-  for (PetscInt i = 0; i < s->n; i++)
-    *thrust += table->grid.weight[i] * f[i] * 2 * (1 - PetscSqr(r[i] / t->setting.radius));
-  for (PetscInt i = 0; i < s->n && ratio != 1; i++) {
-    PetscReal traction[2];
-    TubeDrivenTraction(t->setting.radius, x[i] - x[0], r[i], (PetscReal[]){s->normal[i], s->normal[s->n + i]},
-                       traction);
-    *thrust += (1 - ratio) * t->nu * table->grid.weight[i] * s->J[i] * (traction[0] * u[i] + traction[1] * u[s->n + i]);
-  }
-  PetscCall(PetscFree2(f, u));
-  PetscFunctionReturn(PETSC_SUCCESS);
+PetscReal TubeThrust(Tube t, PetscInt size, const PetscReal T[], const PetscReal F[]) {
+  PetscReal thrust = 0;
+  for (PetscInt k = 0; k < size; k++) thrust += F[k] * T[k * TubeRowCount(t) + t->waves - 1];
+  return thrust;
 }

@@ -13,11 +13,12 @@
    away. With the factor L L^T of this G(k, R), a row of T is a component of L^-1 G at a node k of a quadrature, its
    real part or its imaginary one.
 
-   With a given pressure drop over a period, forces f drive a mean velocity (f . u_1)/(8 pi nu P) too, u_1 the flow of
-   mean velocity 1 and P the period: one more row of T, of the other sign.
+   The last row of T is that of u_1, the flow of mean velocity 1. With a given pressure drop over a period P forces f
+   drive a mean velocity (f . u_1)/(8 pi nu P) too: this row's entry of the diagonal matrix S is 1/(8 pi nu P), or 0
+   where the flux is given, and the others are -1.
 
    A row of T has what a flow t, which is regular in the tube, does to a body's forces. With its traction tau on the
-   body and S the signs of the rows, the double layer of velocities U has of the wall
+   body the double layer of velocities U has of the wall
 
        D_W = -T^T S Theta,     Theta U = INT tau . U dA:
 
@@ -97,8 +98,7 @@ PETSC_EXTERN PetscErrorCode TubeFactor(Tube tube, const PetscReal c[], PetscReal
 PETSC_EXTERN PetscErrorCode TubeAddProduct(Tube tube, PetscInt size, const PetscReal T[], PetscReal scale,
                                            const PetscReal A[], PetscReal M[]);
 
-/* TubeThrust - F . u_1 + (1 - ratio) INT tau_1 . U dA of forces F[size] on the fluid and velocities U[size] of a body
-   of revolution where it has been placed, tau_1 the traction of u_1, ratio that of the viscosity inside to that of the
-   fluid: -pi R^2 times the pressure drop that the body adds, by the reciprocal theorem. Not collective. */
-PETSC_EXTERN PetscErrorCode TubeThrust(Tube tube, Surface surface, PetscReal ratio, const PetscReal F[],
-                                       const PetscReal U[], PetscReal *thrust);
+/* TubeThrust - f . u_1 of forces F[size] and rows T[size][rows], or INT tau_1 . U dA of velocities F and rows Theta,
+   tau_1 the traction of u_1. With forces f on the fluid, and a fluid of another viscosity inside, f . u_1 + (1 - ratio)
+   INT tau_1 . U dA is -pi R^2 times the pressure drop that a body adds, by the reciprocal theorem. Not collective. */
+PETSC_EXTERN PetscReal TubeThrust(Tube tube, PetscInt size, const PetscReal T[], const PetscReal F[]);

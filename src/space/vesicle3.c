@@ -42,18 +42,6 @@ PetscErrorCode Vesicle3Destroy(Vesicle3 *vesicle) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* S and K, which is not factored. */
-static PetscErrorCode Vesicle3PlaceLayers(Vesicle3 v, const PetscReal Xstar[]) {
-  const PetscReal ratio = v->setting.ratio;
-  PetscFunctionBeginUser;
-  PetscCall(SphereSingleLayer(v->at->sphere, v->setting.nu, Xstar, v->S));
-  if (ratio == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SphereLayerMatrix(v->at->sphere, &Stresslet3, Xstar, v->K));
-  for (PetscInt k = 0; k < v->size * v->size; k++)
-    v->K[k] = (1 - ratio) * v->K[k] + (k % (v->size + 1) ? 0 : (1 + ratio) / 2);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode Vesicle3Factor(Vesicle3 v, PetscBool *done) {
   PetscFunctionBeginUser;
   *done = PETSC_TRUE;
@@ -83,9 +71,13 @@ static void Vesicle3SetMotions(Vesicle3 v, const PetscReal Xstar[]) {
 }
 
 PetscErrorCode Vesicle3Place(Vesicle3 v, const PetscReal Xstar[], const PetscReal sigma[]) {
+  const PetscReal ratio = v->setting.ratio;
   PetscFunctionBeginUser;
   PetscCall(SurfacePlace(v->at, Xstar, PETSC_TRUE));
-  PetscCall(Vesicle3PlaceLayers(v, Xstar));
+  PetscCall(SphereSingleLayer(v->at->sphere, v->setting.nu, Xstar, v->S));
+  if (v->K) PetscCall(SphereLayerMatrix(v->at->sphere, &Stresslet3, Xstar, v->K));
+  for (PetscInt k = 0; k < v->size * v->size && v->K; k++)
+    v->K[k] = (1 - ratio) * v->K[k] + (k % (v->size + 1) ? 0 : (1 + ratio) / 2);
   PetscCall(SurfaceNormals(v->at, v->N));
   PetscCall(SurfaceAreaColumns(v->at, v->columns + v->size * v->size));
   PetscCall(SurfacePull(v->at, sigma, v->pull));
@@ -147,32 +139,30 @@ PetscErrorCode Vesicle3Velocity(Vesicle3 v, PetscInt columns, PetscReal U[]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y[size] += scale P_t w. */
-static PetscErrorCode Vesicle3AddTangential(Vesicle3 v, PetscReal scale, const PetscReal w[], PetscReal y[]) {
+/* y[size] += scale P_t w, of labels that are cleaned P_t Lambda gamma w. */
+static PetscErrorCode Vesicle3AddTangential(Vesicle3 v, PetscReal scale, PetscBool clean, const PetscReal w[],
+                                            PetscReal y[]) {
+  PetscReal *part;
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < v->size; k++) y[k] += scale * w[k];
-  PetscCall(DenseMultAdd(PETSC_FALSE, v->size, v->size, -scale, v->N, w, y));
+  PetscCall(PetscMalloc1(v->size, &part));
+  for (PetscInt k = 0; k < v->size; k++) {
+    part[k] = scale * (clean ? v->clean[k] : 1) * w[k];
+    y[k] += part[k];
+  }
+  PetscCall(DenseMultAdd(PETSC_FALSE, v->size, v->size, -1, v->N, part, y));
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* y = Lambda gamma x of labels. */
-static void Vesicle3CleanLabels(Vesicle3 v, const PetscReal x[], PetscReal y[]) {
-  for (PetscInt k = 0; k < v->size; k++) y[k] = v->clean[k] * x[k];
 }
 
 PetscErrorCode Vesicle3Rows(Vesicle3 v, const PetscReal x[], const PetscReal U[], PetscReal y[]) {
   const PetscInt size = v->size;
-  PetscReal *cleaned;
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(y, v->unknowns));
   PetscCall(DenseMultAdd(PETSC_FALSE, size, size, -1, v->N, U, y));
   PetscCall(DenseMultAdd(PETSC_TRUE, size, v->count, -1, v->columns + size * size, U, y + size));
   if (!x) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(size, &cleaned));
-  Vesicle3CleanLabels(v, x, cleaned);
   for (PetscInt k = 0; k < size; k++) y[k] += x[k];
-  PetscCall(Vesicle3AddTangential(v, 1 / v->a0, cleaned, y));
-  PetscCall(PetscFree(cleaned));
+  PetscCall(Vesicle3AddTangential(v, 1 / v->a0, PETSC_TRUE, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -220,10 +210,9 @@ PetscErrorCode Vesicle3Target(Vesicle3 v, const PetscReal Xhat[], const PetscRea
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(v->size, &w));
   PetscCall(PetscArrayzero(b, v->unknowns));
-  Vesicle3CleanLabels(v, Xhat, w);
-  PetscCall(Vesicle3AddTangential(v, -1, w, b));
+  PetscCall(Vesicle3AddTangential(v, -1, PETSC_TRUE, Xhat, b));
   if (U) PetscCall(Vesicle3RigidPart(v, U, w));
-  if (U) PetscCall(Vesicle3AddTangential(v, 1, w, b));
+  if (U) PetscCall(Vesicle3AddTangential(v, 1, PETSC_FALSE, w, b));
   for (PetscInt k = 0; k < v->size; k++) grown += v->columns[v->size * v->size + k] * (Xhat[k] - Xstar[k]);
   b[v->size] = v->a0 * (grown - (v->area - v->at->area) / PetscSqrtReal(4 * PETSC_PI));
   PetscCall(PetscFree(w));

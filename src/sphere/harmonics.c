@@ -33,9 +33,8 @@ static void HarmonicsSet(PetscInt m, const PetscReal turn[2], const PetscReal A[
   }
 }
 
-/* HarmonicsAt of orders |m| <= most; other columns stay as they are. */
-static PetscErrorCode HarmonicsWithin(PetscInt p, PetscInt most, PetscInt n, const PetscReal theta[],
-                                      const PetscReal phi[], PetscInt parts, PetscReal table[]) {
+PetscErrorCode HarmonicsAt(PetscInt p, PetscInt most, PetscInt n, const PetscReal theta[], const PetscReal phi[],
+                           PetscInt parts, PetscReal table[]) {
   const PetscInt count = HarmonicsCount(p), row = p + 1;
   PetscReal *P;
   PetscFunctionBeginUser;
@@ -64,13 +63,6 @@ static PetscErrorCode HarmonicsWithin(PetscInt p, PetscInt most, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[], PetscInt parts,
-                           PetscReal table[]) {
-  PetscFunctionBeginUser;
-  PetscCall(HarmonicsWithin(p, p, n, theta, phi, parts, table));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode HarmonicsRevolvedAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
                                    PetscInt parts, PetscReal table[]) {
   const PetscInt count = HarmonicsCount(p);
@@ -79,7 +71,7 @@ PetscErrorCode HarmonicsRevolvedAt(PetscInt p, PetscInt n, const PetscReal theta
   PetscCall(PetscMalloc1(parts * count, &one));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal *entry = table + i;
-    PetscCall(HarmonicsWithin(p, 1, 1, theta + i, phi + i, parts, one));
+    PetscCall(HarmonicsAt(p, 1, 1, theta + i, phi + i, parts, one));
     for (PetscInt part = 0; part < parts; part++)
       for (PetscInt group = 0; group < 3; group++)
         for (PetscInt l = group ? 1 : 0; l <= p; l++, entry += n)

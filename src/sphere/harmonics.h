@@ -18,10 +18,10 @@ PETSC_EXTERN PetscInt HarmonicsDegree(PetscInt k);
 /* Values and derivatives: Y, Y_theta, Y_phi, Y_theta_theta, Y_theta_phi, Y_phi_phi. */
 enum { HARMONIC, HARMONIC_T, HARMONIC_P, HARMONIC_TT, HARMONIC_TP, HARMONIC_PP, HARMONIC_PARTS };
 
-/* HarmonicsAt - table[part][count][n] at n points, of the first `parts` parts; where those have derivatives, no point
-   may be a pole. Not collective. Errors: memory. */
-PETSC_EXTERN PetscErrorCode HarmonicsAt(PetscInt p, PetscInt n, const PetscReal theta[], const PetscReal phi[],
-                                        PetscInt parts, PetscReal table[]);
+/* HarmonicsAt - table[part][count][n] at n points, of the first `parts` parts and the orders |m| <= most; other numbers
+   stay as they are. Where parts have derivatives, no point may be a pole. Not collective. Errors: memory. */
+PETSC_EXTERN PetscErrorCode HarmonicsAt(PetscInt p, PetscInt most, PetscInt n, const PetscReal theta[],
+                                        const PetscReal phi[], PetscInt parts, PetscReal table[]);
 
 /* HarmonicsRevolvedAt - what fields of bodies of revolution are made of: table[part][3p + 1][n], Y_(l, 0), l = 0 .. p,
    then Y_(l, 1)/sqrt(2) and Y_(l, -1)/sqrt(2), l = 1 .. p. Not collective. Errors: memory. */

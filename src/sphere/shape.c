@@ -133,7 +133,7 @@ PetscErrorCode ShapeFit(Sphere sphere, PetscInt n, const PetscReal x[], PetscRea
   for (PetscInt i = 0; i < 3 * n; i++) m.center[i % 3] += x[i] / (PetscReal)n;
   for (int pass = 0; pass < FIT_PASSES; pass++) {
     FitDirections(&m, n, x, theta, phi);
-    PetscCall(HarmonicsAt(sphere->p, n, theta, phi, 1, Y));
+    PetscCall(HarmonicsAt(sphere->p, sphere->p, n, theta, phi, 1, Y));
     for (PetscInt i = 0; i < 3 * n; i++) b[i % 3 * n + i / 3] = x[i];
     PetscCall(DenseLeastSquares(n, count, Y, 3, b, FIT_RANK, singular));
     *spread = singular[count - 1] / singular[0];

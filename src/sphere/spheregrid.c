@@ -35,7 +35,10 @@ static PetscErrorCode SphereTableFill(SphereTable *t, PetscInt p, SphereSymmetry
   const PetscInt n = t->grid.n, count = HarmonicsCount(p), columns = whole ? count : 3 * p + 1;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(parts * columns * n, &t->part[0]));
-  PetscCall((whole ? HarmonicsAt : HarmonicsRevolvedAt)(p, n, t->grid.theta, t->grid.phi, parts, t->part[0]));
+  if (whole)
+    PetscCall(HarmonicsAt(p, p, n, t->grid.theta, t->grid.phi, parts, t->part[0]));
+  else
+    PetscCall(HarmonicsRevolvedAt(p, n, t->grid.theta, t->grid.phi, parts, t->part[0]));
   for (PetscInt part = 0; part < parts; part++) {
     t->part[part] = t->part[0] + part * columns * n;
     for (int d = 0; d < 3; d++) {

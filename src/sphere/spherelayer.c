@@ -44,7 +44,7 @@ typedef struct {
   PetscInt around, n;
   PetscReal *turned; /* [around][3][count] coefficients, of degree 2p for normals */
   PetscReal *X;      /* [around][3][n] points */
-  PetscReal *normal; /* [around][3][n]; NULL: not needed */
+  PetscReal *normal; /* [around][3][n], where the kernel has one */
   PetscReal *G;      /* [around][TENSOR_COUNT][n] */
   PetscReal *rows;   /* [count][around TENSOR_COUNT] */
 } LatitudeWork;
@@ -70,8 +70,7 @@ static PetscErrorCode LayerLatitude(Sphere s, const Kernel3 *kernel, PetscInt la
   for (PetscInt j = 0; j < w->around; j++) {
     PetscReal *d = w->X + 3 * j * n;
     for (PetscInt k = 0; k < 3 * n; k++) d[k] = at[(k / n) * targets + latitude * w->around + j] - d[k];
-    kernel->set(n, d, w->normal ? w->normal + 3 * j * n : NULL, s->turned[latitude].grid.weight,
-                w->G + TENSOR_COUNT * j * n);
+    kernel->set(n, d, w->normal + 3 * j * n, s->turned[latitude].grid.weight, w->G + TENSOR_COUNT * j * n);
   }
   PetscCall(DenseProduct(PETSC_TRUE, rows, count, n, w->G, s->turned[latitude].part[HARMONIC], w->rows));
   for (PetscInt r = 0; r < rows; r++) {
@@ -110,41 +109,30 @@ static PetscErrorCode LayerNormalFields(Sphere s, const PetscReal c[], PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All inner integrals, out[TENSOR_COUNT][count][targets]; m: coefficients of the normals. */
-static PetscErrorCode LayerAtTargets(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
-                                     PetscReal out[]) {
-  const PetscInt around = 2 * s->p + 2, n = s->turned->grid.n, many = HarmonicsCount(kernel->normal ? 2 * s->p : s->p);
+/* m: coefficients of the normals. */
+static PetscErrorCode WholeLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
+                                       PetscReal M[]) {
+  const PetscInt count = s->count, targets = s->shape.grid.n, size = 3 * count, around = 2 * s->p + 2,
+                 n = s->turned->grid.n, many = HarmonicsCount(kernel->normal ? 2 * s->p : s->p);
   LatitudeWork w = {.around = around, .n = n};
-  PetscReal *at;
+  PetscReal *at, *out, *block;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(3 * s->shape.grid.n, &at, 3 * around * many, &w.turned, 3 * around * n, &w.X));
-  PetscCall(PetscMalloc2(TENSOR_COUNT * around * n, &w.G, TENSOR_COUNT * around * s->count, &w.rows));
-  if (kernel->normal) PetscCall(PetscMalloc1(3 * around * n, &w.normal));
+  PetscCall(PetscMalloc3(3 * targets, &at, TENSOR_COUNT * count * targets, &out, TENSOR_COUNT * count * count, &block));
+  PetscCall(PetscMalloc5(3 * around * many, &w.turned, 3 * around * n, &w.X, 3 * around * n, &w.normal,
+                         TENSOR_COUNT * around * n, &w.G, TENSOR_COUNT * around * count, &w.rows));
   PetscCall(SphereFieldValues(&s->shape, HARMONIC, c, at));
   for (PetscInt i = 0; i <= s->p; i++) {
     PetscCall(LayerTurnedValues(&s->turned[i], s->p, c, &w, w.X));
     if (kernel->normal) PetscCall(LayerTurnedValues(&s->normal[i], 2 * s->p, m, &w, w.normal));
     PetscCall(LayerLatitude(s, kernel, i, at, &w, out));
   }
-  PetscCall(PetscFree(w.normal));
-  PetscCall(PetscFree2(w.G, w.rows));
-  PetscCall(PetscFree3(at, w.turned, w.X));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode WholeLayerMatrix(Sphere s, const Kernel3 *kernel, const PetscReal c[], const PetscReal m[],
-                                       PetscReal M[]) {
-  const PetscInt count = s->count, targets = s->shape.grid.n, size = 3 * count;
-  PetscReal *out, *block;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(TENSOR_COUNT * count * targets, &out, TENSOR_COUNT * count * count, &block));
-  PetscCall(LayerAtTargets(s, kernel, c, m, out));
   PetscCall(SphereTableProject(&s->shape, count, TENSOR_COUNT * count, out, block));
   for (int a = 0; a < 3; a++)
     for (PetscInt l = 0; l < size; l++)
       PetscCall(PetscArraycpy(M + l * size + a * count, block + (TensorPlace[a][l / count] * count + l % count) * count,
                               count));
-  PetscCall(PetscFree2(out, block));
+  PetscCall(PetscFree3(at, out, block));
+  PetscCall(PetscFree5(w.turned, w.X, w.normal, w.G, w.rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -28,11 +28,11 @@ static void CheckTables(Sphere s) {
   for (PetscInt k = 0; k < count * count; k++) TestWorse(&error, gram[k] - (k % count == k / count));
   CheckBelow(error, 1e-13, "%d harmonics are orthonormal on %d points", (int)count, (int)s->fine.grid.n);
   PetscReal *table = TestReals(parts), *moved = TestReals(4 * parts);
-  TestCall(HarmonicsAt(s->p, 1, at, at + 1, HARMONIC_PARTS, table));
+  TestCall(HarmonicsAt(s->p, s->p, 1, at, at + 1, HARMONIC_PARTS, table));
   for (int q = 0; q < 4; q++) { /* theta and phi, each farther and back */
     PetscReal place[2] = {at[0], at[1]};
     place[q / 2] += q % 2 ? -step : step;
-    TestCall(HarmonicsAt(s->p, 1, &place[0], &place[1], HARMONIC_PARTS, moved + q * parts));
+    TestCall(HarmonicsAt(s->p, s->p, 1, &place[0], &place[1], HARMONIC_PARTS, moved + q * parts));
   }
   static const int pairs[][3] = {{HARMONIC, HARMONIC_T, 0},
                                  {HARMONIC, HARMONIC_P, 2},
@@ -50,7 +50,7 @@ static void CheckTables(Sphere s) {
   }
   const PetscReal *c = TestSurface(s->p, 1), phi = at[1] + turn;
   HarmonicsTurn(s->p, turn, PETSC_FALSE, c, y);
-  TestCall(HarmonicsAt(s->p, 1, at, &phi, 1, moved));
+  TestCall(HarmonicsAt(s->p, s->p, 1, at, &phi, 1, moved));
   CheckBelow(TestProduct(count, y, table) - TestProduct(count, c, moved), 1e-13, "coefficients turn by %g", turn);
   HarmonicsTurn(s->p, turn, PETSC_TRUE, y, z);
   CheckBelow(TestFar(count, z, c), 1e-14, "and back");
