@@ -55,11 +55,13 @@ static inline void PETSC_ATTRIBUTE_FORMAT(3, 4) CheckBelow(PetscReal x, PetscRea
 }
 
 /* TestKeep - what is to be destroyed, or freed, when the program ends. */
-static struct TestKept {
+struct TestKept {
   void *what;
   PetscBool is_object;
   struct TestKept *before;
-} * test_kept;
+};
+
+static struct TestKept *test_kept;
 
 static inline void TestKeep(void *what, PetscBool is_object) {
   struct TestKept *kept;
@@ -91,10 +93,10 @@ static inline PetscReal *TestReals(PetscInt n) {
     TestCall(destroy(x));                                                                                              \
   }
 
-TestScoped(Mat, MatDestroy)
+TestScoped(Mat, MatDestroy);
 
-    /* TestText - a text as of printf. TestScratch - the name of a scratch file. The end of the program frees them. */
-    static inline const char *PETSC_ATTRIBUTE_FORMAT(1, 2) TestText(const char format[], ...) {
+/* TestText - a text as of printf. TestScratch - the name of a scratch file. The end of the program frees them. */
+static inline const char *PETSC_ATTRIBUTE_FORMAT(1, 2) TestText(const char format[], ...) {
   char text[TEST_TEXT], *kept;
   TestPrint(text, format);
   TestCall(PetscStrallocpy(text, &kept));

@@ -3,10 +3,10 @@
 #include "baselines/lagrangian.h"
 #include "baselines/tensionmatrix.h"
 
-TestScoped(LagrangianSolver, LagrangianSolverDestroy)
+TestScoped(LagrangianSolver, LagrangianSolverDestroy);
 
-    /* One column of Chat at a time with the MatShells; the largest difference over the largest entry. */
-    static PetscReal ChatError(TestWorld *t) {
+/* One column of Chat at a time with the MatShells; the largest difference over the largest entry. */
+static PetscReal ChatError(TestWorld *t) {
   const Layout l = t->layout;
   const Fluid f = t->fluid;
   Scoped(Mat) Chat, L;

@@ -4,10 +4,10 @@
 #include "bodies/bending.h"
 #include "bodies/stretch.h"
 
-TestScoped(MembraneLaw, LawDestroy)
+TestScoped(MembraneLaw, LawDestroy);
 
-    /* Membrane of M markers on an ellipse, turned and moved. */
-    static void Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, TestMembrane *m) {
+/* Membrane of M markers on an ellipse, turned and moved. */
+static void Ellipse(PetscInt M, PetscReal a, PetscReal b, PetscReal degrees, TestMembrane *m) {
   TestMembraneCreate(m,
                      "-domain_box -8,8,-8,8 -domain_cells 800,800 -vesicle_semi_axes %.17g,%.17g -vesicle_angle "
                      "%.17g -vesicle_center 1.25,-0.5 -vesicle_markers %d -vesicle_bending 0.3 "

@@ -6,11 +6,11 @@
 #include "fluid/stokes/stokes.h"
 #include <dlfcn.h>
 
-TestScoped(Convection, ConvectionDestroy)
+TestScoped(Convection, ConvectionDestroy);
 
 #define NU 0.05
 
-    typedef void Exact(const PetscReal at[3], PetscReal value[3]); /* u', v', p at x, y, t */
+typedef void Exact(const PetscReal at[3], PetscReal value[3]); /* u', v', p at x, y, t */
 
 static PetscReal height = 2; /* of the box [-1, 1] x [-1, height - 1] */
 

@@ -6,15 +6,15 @@
 #include "layers/curvelayer.h"
 #include "layers/stencilsums.h"
 
-TestScoped(MembraneLaw, LawDestroy)
+TestScoped(MembraneLaw, LawDestroy);
 
 #define SCENE                                                                                                          \
   "-delta_type cbs54 -coupling_near_field exact -coupling_box_part false -membrane_derivative spectral "               \
   "-scheme_type coupled -fluid_inertia none -domain_box -2,2,-2,2 -domain_cells 64,64 -vesicle_area 1 "                \
   "-vesicle_reduced_area .7 -vesicle_center .013,.021 -vesicle_angle 20 "
-    /* Known values; the divergence is 1/2 in the dipole's own cell, none elsewhere nor of xy. Of xy, whose entry is the
-       upper right corner of a cell, the four cells around it are those with offsets 0 and 1. */
-    static void CheckTables(void) {
+/* Known values; the divergence is 1/2 in the dipole's own cell, none elsewhere nor of xy. Of xy, whose entry is the
+   upper right corner of a cell, the four cells around it are those with offsets 0 and 1. */
+static void CheckTables(void) {
   OffsetTable t[2];
   TestCall(LatticeDipoles(40, t));
   const PetscReal known[] = {.204577471545947, .045422528454052, .090845056908106};

@@ -1,10 +1,10 @@
 /* Spectral derivatives along a closed curve, shifts of labels, slopes, and the initial curve through few markers. */
 #include "facts.h"
 
-TestScoped(Spectral, SpectralDestroy)
+TestScoped(Spectral, SpectralDestroy);
 
-    /* The first derivative is antisymmetric, the fourth symmetric. */
-    static void CheckAdjoints(PetscInt n, Spectral s) {
+/* The first derivative is antisymmetric, the fourth symmetric. */
+static void CheckAdjoints(PetscInt n, Spectral s) {
   unsigned seed = 3;
   const PetscReal *x = TestRandoms(2 * n, &seed), *y = TestRandoms(2 * n, &seed);
   for (int power = 1; power <= 4; power += 3) {

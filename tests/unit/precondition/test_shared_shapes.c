@@ -8,7 +8,7 @@
 #define VESICLES 7
 #define N 45 /* markers of a vesicle */
 
-TestScoped(SharedShapes, SharedShapesDestroy)
+TestScoped(SharedShapes, SharedShapesDestroy);
 
 /* Curves of one shape, each turned and with its labels shifted. */
 #define OPTIONS                                                                                                        \
@@ -21,7 +21,7 @@ TestScoped(SharedShapes, SharedShapesDestroy)
   "-domain_cells 96,48 -domain_bc_x periodic -vesicle_semi_axes 0.35,0.8 -vesicle_center "                             \
   "0.6,2,1.4,2,2.2,2,3.0,2,3.8,2,4.6,2,6.8,2 -vesicle_angle 0 -time_step 0.05 -vesicle_bending 0.5 "
 
-    static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], PetscReal Y[]) {
+static void TurnCurve(PetscReal angle, PetscInt shift, const PetscReal X[], PetscReal Y[]) {
   for (PetscInt k = 0; k < N; k++) {
     const PetscReal *x = X + 2 * ((k + shift) % N);
     Y[2 * k] = 3 + cos(angle) * x[0] - sin(angle) * x[1];

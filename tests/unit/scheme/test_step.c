@@ -3,12 +3,12 @@
 #include "facts.h"
 #include "scheme/coupled.h"
 
-TestScoped(Spectral, SpectralDestroy)
+TestScoped(Spectral, SpectralDestroy);
 
 #define FIRST 4 /* states: the newest and three before it */
 
-    /* Take the mean off. */
-    static void Center(PetscInt n, PetscReal x[]) {
+/* Take the mean off. */
+static void Center(PetscInt n, PetscReal x[]) {
   for (int c = 0; c < 2; c++) {
     PetscReal mean = 0;
     for (PetscInt k = 0; k < n; k++) mean += x[2 * k + c] / n;

@@ -4,11 +4,10 @@
 #include "space/space.h"
 #include "sphere/shape.h"
 
-TestScoped(Space, SpaceDestroy)
+TestScoped(Space, SpaceDestroy);
 
-    /* Extension along x. */
-    static PetscErrorCode
-    AxialExtension(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
+/* Extension along x. */
+static PetscErrorCode AxialExtension(const void *rate, PetscReal t, PetscInt n, const PetscReal X[], PetscReal u[]) {
   const PetscReal e = *(const PetscReal *)rate;
   for (PetscInt k = 0; k < 3 * n; k++) u[k] = e * X[k] * (k < n ? 1 : -0.5);
   return PETSC_SUCCESS;

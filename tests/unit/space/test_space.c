@@ -17,10 +17,12 @@ static void PairDestroy(Pair *q) {
   TestCall(CrossLayerDestroy(&q->cross));
   TestCall(SphereDestroy(&q->sphere));
 }
-TestScoped(Sphere, SphereDestroy) TestScoped(Surface, SurfaceDestroy) TestScoped(Space, SpaceDestroy)
+TestScoped(Sphere, SphereDestroy);
+TestScoped(Surface, SurfaceDestroy);
+TestScoped(Space, SpaceDestroy);
 #define ScopedPair __attribute__((cleanup(PairDestroy))) Pair
 
-    static void PairCreate(PetscInt p, Contact3Law law, PetscReal fine, Pair *q) {
+static void PairCreate(PetscInt p, Contact3Law law, PetscReal fine, Pair *q) {
   PetscMPIInt rank, ranks;
   TestCall(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   TestCall(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));

@@ -5,9 +5,10 @@
 #include "space/throat.h"
 #include "sphere/spherelayer.h"
 
-TestScoped(Tube, TubeDestroy) TestScoped(Throat, ThroatDestroy)
+TestScoped(Tube, TubeDestroy);
+TestScoped(Throat, ThroatDestroy);
 
-    static Sphere sphere;
+static Sphere sphere;
 static Surface surface;
 
 /* A tube, ready for a body of half axes `along` and a on its axis where a > 0. */

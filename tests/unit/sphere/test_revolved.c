@@ -4,10 +4,11 @@
 #include "sphere/shape.h"
 #include "sphere/spherelayer.h"
 
-TestScoped(Sphere, SphereDestroy) TestScoped(Surface, SurfaceDestroy)
+TestScoped(Sphere, SphereDestroy);
+TestScoped(Surface, SurfaceDestroy);
 
-    /* Any smooth body of revolution. */
-    static PetscReal *RevolvedSurface(Sphere s) {
+/* Any smooth body of revolution. */
+static PetscReal *RevolvedSurface(Sphere s) {
   PetscReal *c = TestReals(s->size);
   unsigned seed = 5;
   for (PetscInt k = 1; k < s->size; k++) c[k] = TestRandom(&seed) / PetscPowReal(5, (PetscReal)s->degree[k]);

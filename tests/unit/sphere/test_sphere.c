@@ -4,10 +4,10 @@
 #include "sphere/spherelayer.h"
 #include "sphere/surface.h"
 
-TestScoped(Surface, SurfaceDestroy)
+TestScoped(Surface, SurfaceDestroy);
 
-    /* Any smooth surface: an ellipsoid and some harmonics of a degree below p. */
-    static PetscReal *TestSurface(PetscInt p, PetscReal rough) {
+/* Any smooth surface: an ellipsoid and some harmonics of a degree below p. */
+static PetscReal *TestSurface(PetscInt p, PetscReal rough) {
   const PetscInt count = HarmonicsCount(p);
   const PetscReal axes[3] = {1.3, 0.9, 0.8};
   PetscReal *c = TestReals(3 * count);
