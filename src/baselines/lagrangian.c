@@ -41,8 +41,7 @@ static PetscErrorCode MultBending(Mat A, Vec x, Vec y) {
 
 /* y = P^-1 x: every rank has all of x, and takes its own part of the result. */
 static PetscErrorCode ApplyChat(PC pc, Vec x, Vec y) {
-  const PetscScalar *result;
-  PetscScalar *all, *own;
+  PetscScalar *result, *all, *own;
   LagrangianSolver s;
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &s));
@@ -51,11 +50,9 @@ static PetscErrorCode ApplyChat(PC pc, Vec x, Vec y) {
   PetscCall(LayoutGatherVec(l, x, all));
   PetscCall(VecRestoreArray(s->all[0], &all));
   PetscCall(PCApply(s->chat, s->all[0], s->all[1]));
-  PetscCall(VecGetArrayRead(s->all[1], &result));
-  PetscCall(VecGetArray(y, &own));
+  PetscCall(VecGetArrayPair(s->all[1], y, &result, &own));
   PetscCall(PetscArraycpy(own, result + l->first, l->n));
-  PetscCall(VecRestoreArray(y, &own));
-  PetscCall(VecRestoreArrayRead(s->all[1], &result));
+  PetscCall(VecRestoreArrayPair(s->all[1], y, &result, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,11 +15,9 @@ typedef struct {
 /* sigma = sigma_0 (|X_s| - 1) at the markers X; force may be NULL */
 static PetscErrorCode SpringTension(Scheme s, Penalty *d, Vec X, Vec sigma, Vec force) {
   const Layout l = s->membrane->layout;
-  const PetscScalar *x;
-  PetscScalar *tension, *f = NULL;
+  PetscScalar *x, *tension, *f = NULL;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(sigma, &tension));
+  PetscCall(VecGetArrayPair(X, sigma, &x, &tension));
   if (force) PetscCall(VecGetArray(force, &f));
   MembraneTangents(s->membrane, l->own, l->end, x, d->tau);
   for (PetscInt k = 0; k < l->n; k++) {
@@ -28,8 +26,7 @@ static PetscErrorCode SpringTension(Scheme s, Penalty *d, Vec X, Vec sigma, Vec 
     if (f) f[k] = tension[k] / stretch;
   }
   if (force) PetscCall(VecRestoreArray(force, &f));
-  PetscCall(VecRestoreArray(sigma, &tension));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayPair(X, sigma, &x, &tension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

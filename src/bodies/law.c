@@ -86,16 +86,15 @@ void LawRows(MembraneLaw law, const PetscScalar V[], const PetscScalar sigma[], 
 
 PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) {
   const Membrane m = law->membrane;
-  const PetscScalar *X, *t;
-  PetscScalar *hat = m->work.stretching, *passed = m->work.memory, *d;
+  const PetscScalar *t;
+  PetscScalar *X, *hat = m->work.stretching, *passed = m->work.memory, *d;
   PetscFunctionBeginUser;
   if (T) {
     PetscCall(VecGetArrayRead(T, &t));
     LawRows(law, t, NULL, passed);
     PetscCall(VecRestoreArrayRead(T, &t));
   }
-  PetscCall(VecGetArrayRead(Xhat, &X));
-  PetscCall(VecGetArray(g, &d));
+  PetscCall(VecGetArrayPair(Xhat, g, &X, &d));
   for (PetscInt v = law->vesicle; v < law->end; v++) {
     const PetscInt at = LawOffset(law, v);
     const PetscReal ds = m->ds[v], rate = MembraneStretches(m, v) ? law->a0 : a0;
@@ -112,8 +111,7 @@ PetscErrorCode LawTarget(MembraneLaw law, PetscReal a0, Vec Xhat, Vec T, Vec g) 
       if (T) d[at + k] -= law->viscous[at + k] * passed[at + k];
     }
   }
-  PetscCall(VecRestoreArray(g, &d));
-  PetscCall(VecRestoreArrayRead(Xhat, &X));
+  PetscCall(VecRestoreArrayPair(Xhat, g, &X, &d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,14 +3,11 @@
 #include "bodies/freebodies.h"
 
 PetscErrorCode CouplingCopyVesicles(Coupling c, Vec from, Vec to) {
-  const PetscScalar *a;
-  PetscScalar *b;
+  PetscScalar *a, *b;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(from, &a));
-  PetscCall(VecGetArray(to, &b));
+  PetscCall(VecGetArrayPair(from, to, &a, &b));
   PetscCall(PetscArraycpy(b, a, 2 * c->membrane->layout->n));
-  PetscCall(VecRestoreArray(to, &b));
-  PetscCall(VecRestoreArrayRead(from, &a));
+  PetscCall(VecRestoreArrayPair(from, to, &a, &b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,30 +60,24 @@ PetscErrorCode CouplingPlace(Coupling c, PetscReal a0, Instant at, Vec X, const 
 }
 
 PetscErrorCode CouplingSpreadTension(Coupling c, PetscReal alpha, Vec sigma, Vec w) {
-  const PetscScalar *s;
-  PetscScalar *F;
+  PetscScalar *s, *F;
   PetscFunctionBeginUser;
   PetscCall(VecSet(c->force, 0));
-  PetscCall(VecGetArrayRead(sigma, &s));
-  PetscCall(VecGetArray(c->force, &F));
+  PetscCall(VecGetArrayPair(sigma, c->force, &s, &F));
   LawForce(c->law, 1 / PetscSqr(c->fluid->grid->h), s, F);
-  PetscCall(VecRestoreArray(c->force, &F));
-  PetscCall(VecRestoreArrayRead(sigma, &s));
+  PetscCall(VecRestoreArrayPair(sigma, c->force, &s, &F));
   PetscCall(MarkersSpread(c->markers, alpha, c->force, w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* F = (c_b ds/h^2) D4 X */
 static PetscErrorCode BendingForce(Coupling c, Vec X, Vec F) {
-  const PetscScalar *x;
-  PetscScalar *f;
+  PetscScalar *x, *f;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(F, &f));
+  PetscCall(VecGetArrayPair(X, F, &x, &f));
   MembraneBending(c->membrane, c->membrane->bending / PetscSqr(c->fluid->grid->h), x, f);
-  PetscCall(VecRestoreArray(F, &f));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayPair(X, F, &x, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,13 +102,12 @@ PetscErrorCode CouplingMarkers(Coupling c, Vec Y, Vec place, Vec all) {
 
 PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, Vec F, PetscReal push[]) {
   const PetscInt first = BodiesFirstObstacle(c->bodies);
-  const PetscScalar *x, *y, *s;
-  PetscScalar *f;
+  const PetscScalar *y, *s;
+  PetscScalar *x, *f;
   PetscFunctionBeginUser;
   PetscCall(VecSet(F, 0));
   PetscCall(VecGetArrayRead(Y, &y));
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(F, &f));
+  PetscCall(VecGetArrayPair(X, F, &x, &f));
   PetscCall(ForcesRate(c->forces, 1, y, f));
   PetscCall(ForcesKnown(c->forces, 1, x, f));
   if (push) FreeBodiesSum(c->bodies->obstacles, f + first, push);
@@ -127,33 +117,26 @@ PetscErrorCode CouplingStepForce(Coupling c, Vec Y, Vec X, Vec sigma, Vec F, Pet
     LawForce(c->law, 1, s, f);
     PetscCall(VecRestoreArrayRead(sigma, &s));
   }
-  PetscCall(VecRestoreArray(F, &f));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayPair(X, F, &x, &f));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CouplingTread(Coupling c, PetscReal alpha, Vec X, Vec U) {
-  const PetscScalar *x;
-  PetscScalar *u;
+  PetscScalar *x, *u;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(U, &u));
+  PetscCall(VecGetArrayPair(X, U, &x, &u));
   MembraneTread(c->membrane, c->treading, alpha, x, u);
-  PetscCall(VecRestoreArray(U, &u));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayPair(X, U, &x, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CouplingStretching(Coupling c, Vec U, Vec d) {
-  const PetscScalar *u;
-  PetscScalar *stretching;
+  PetscScalar *u, *stretching;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(U, &u));
-  PetscCall(VecGetArray(d, &stretching));
+  PetscCall(VecGetArrayPair(U, d, &u, &stretching));
   LawRows(c->law, u, NULL, stretching);
-  PetscCall(VecRestoreArray(d, &stretching));
-  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscCall(VecRestoreArrayPair(U, d, &u, &stretching));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

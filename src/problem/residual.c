@@ -86,18 +86,15 @@ static PetscErrorCode ReducedResidual(Reduced s, const CoupledProblem *q, const 
 
 static PetscErrorCode ReducedMult(Mat A, Vec x, Vec y) {
   Reduced s;
-  const PetscScalar *xa;
-  PetscScalar *ya;
+  PetscScalar *xa, *ya;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &s));
-  PetscCall(VecGetArrayRead(x, &xa));
-  PetscCall(VecGetArray(y, &ya));
+  PetscCall(VecGetArrayPair(x, y, &xa, &ya));
   PetscCall(ReducedForce(s, xa, s->F));
   PetscCall(ReducedMotion(s, xa, NULL, s->G));
   PetscCall(MobilityApply(s->unknowns->coupling->mobility, s->F, s->G, s->U));
   PetscCall(ReducedResidual(s, NULL, xa, ya));
-  PetscCall(VecRestoreArray(y, &ya));
-  PetscCall(VecRestoreArrayRead(x, &xa));
+  PetscCall(VecRestoreArrayPair(x, y, &xa, &ya));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -47,16 +47,13 @@ static PetscErrorCode FitLabelSpeeds(History *h, Scheme s) {
 
 /* y(label) = x of state j at the label that this marker had then: labels turn by V times the time since state j. */
 static PetscErrorCode CarryState(const History *h, Membrane m, PetscInt j, int each, Vec x, Vec y) {
-  const PetscScalar *from;
-  PetscScalar *to;
+  PetscScalar *from, *to;
   PetscReal back = 0;
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i <= j; i++) back += h->step[i];
-  PetscCall(VecGetArrayRead(x, &from));
-  PetscCall(VecGetArray(y, &to));
+  PetscCall(VecGetArrayPair(x, y, &from, &to));
   MembraneShiftLabels(m, h->treading, back, each, from, to);
-  PetscCall(VecRestoreArray(y, &to));
-  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(VecRestoreArrayPair(x, y, &from, &to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -80,16 +80,13 @@ PetscBool SchemeIsSmooth(Scheme s) {
 }
 
 PetscErrorCode SchemeBackground(Scheme s, Vec X, PetscReal t) {
-  const PetscScalar *x;
-  PetscScalar *u;
+  PetscScalar *x, *u;
   PetscFunctionBeginUser;
   PetscCall(VecSet(s->background, 0));
   if (s->fluid->total) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(s->background, &u));
+  PetscCall(VecGetArrayPair(X, s->background, &x, &u));
   PetscCall(FlowVelocities(&s->scene->flow, t, s->membrane->layout->n, x, u, s->report.failure));
-  PetscCall(VecRestoreArray(s->background, &u));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayPair(X, s->background, &x, &u));
   if (FlowIsCustom(&s->scene->flow)) PetscCall(AgreeMessage(s->scene->comm, s->report.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,14 +109,11 @@ PetscErrorCode SchemeCheckBodies(Scheme s, Instant at) {
 
 /* background += the osmotic velocity, of permeable membranes. */
 static PetscErrorCode AddOsmotic(Scheme s, Vec X) {
-  const PetscScalar *x;
-  PetscScalar *u;
+  PetscScalar *x, *u;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(s->background, &u));
+  PetscCall(VecGetArrayPair(X, s->background, &x, &u));
   SeepageOsmotic(s->membrane, x, u);
-  PetscCall(VecRestoreArray(s->background, &u));
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayPair(X, s->background, &x, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
