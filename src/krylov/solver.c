@@ -118,9 +118,8 @@ static PetscErrorCode FreeReference(CoupledSolver s) {
    before, whose square the first residual gives (Begin). */
 static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   const Unknowns u = s->unknowns;
-  const Forcing *f = q->known.f;
   PetscScalar *a, *k;
-  PetscReal squares = 0, norm;
+  PetscReal squares, norm;
   PetscFunctionBeginUser;
   PetscCall(VecSet(s->change, 0));
   PetscCall(UnknownsPack(u, NULL, NULL, q->g, s->change));
@@ -138,8 +137,7 @@ static PetscErrorCode Reference(CoupledSolver s, const CoupledProblem *q) {
   UnknownsScale(u, PETSC_FALSE, a);
   PetscCall(VecRestoreArray(s->change, &a));
   PetscCall(VecNorm(s->change, NORM_2, &norm));
-  PetscCall(GridAddSquares(f->grid, f->everywhere ? NULL : &f->window, f->values, &squares));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPIU_REAL, MPI_SUM, f->grid->comm));
+  PetscCall(VecDot(q->known.f->values, q->known.f->values, &squares));
   s->reference = PetscSqrtReal(PetscSqr(norm) + PetscSqr(u->length) * squares);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -81,10 +81,8 @@ typedef struct {
   PetscInt rows[2], columns[2];
 } GridWindow;
 
-/* GridClear - zero in a window of a velocity or a pressure. GridAddSquares - sum += SUM w^2 of a velocity in a window,
-   NULL: in all. Not collective. */
+/* GridClear - zero in a window of a velocity or a pressure. Not collective. */
 PETSC_EXTERN PetscErrorCode GridClear(Grid grid, const GridWindow *window, Vec x);
-PETSC_EXTERN PetscErrorCode GridAddSquares(Grid grid, const GridWindow *window, Vec w, PetscReal *sum);
 
 /* GridLargestDivergence - max |G^T w + bc2| (1/time) over all cells, bc2 NULL for walls at rest; NaN when an entry is
    not finite. The same on every rank. Collective. */

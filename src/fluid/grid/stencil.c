@@ -1,5 +1,4 @@
 /* The operators G, G^T and H on local arrays, row by row, and their MatShells. */
-#include "base/lanes.h"
 #include "fluid/grid/grid.h"
 
 PetscErrorCode GridGradient(Grid g, PetscReal alpha, Vec p, PetscBool add, Vec w) {
@@ -87,23 +86,6 @@ PetscErrorCode GridClear(Grid g, const GridWindow *window, Vec w) {
     for (PetscInt j = row; j < row + rows; j++) PetscCall(PetscArrayzero(a + start[f] + j * g->columns[f] + column, n));
   }
   PetscCall(VecRestoreArray(w, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GridAddSquares(Grid g, const GridWindow *window, Vec w, PetscReal *sum) {
-  const PetscScalar *a;
-  PetscInt row, column;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(w, &a));
-  for (int f = FIELD_U; f <= FIELD_V; f++) {
-    const GridWindow all = {{0, g->rows[f]}, {0, g->columns[f]}}, *part = window ? window : &all;
-    const PetscInt rows = Clip(part->rows, g->rows[f], &row), n = Clip(part->columns, g->columns[f], &column);
-    for (PetscInt j = row; j < row + rows; j++) {
-      const PetscScalar *x = a + GridRowStart(g, (Field)f, j) + column;
-      *sum += LanesDot(n, x, x);
-    }
-  }
-  PetscCall(VecRestoreArrayRead(w, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
