@@ -109,9 +109,11 @@ PetscErrorCode OptionParse(MPI_Comm comm, const OptionRow *o, const char text[],
   IntList *ints = (IntList *)place;
   PetscReal *x;
   PetscInt n;
+  const PetscBool words = o->type == OPT_PATH || o->type == OPT_TEXT;
   PetscFunctionBeginUser;
-  if (o->type == OPT_BOOL) PetscFunctionReturn(OptionParseTruth(comm, o, text, (PetscBool *)place));
-  if (o->type == OPT_PATH || o->type == OPT_TEXT) PetscFunctionReturn(OptionParsePath(comm, o, text, (char *)place));
+  if (o->type == OPT_BOOL) PetscCall(OptionParseTruth(comm, o, text, (PetscBool *)place));
+  if (words) PetscCall(OptionParsePath(comm, o, text, (char *)place));
+  if (words || o->type == OPT_BOOL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OptionParseNumbers(comm, o, text, &n, &x));
   if (o->type == OPT_NAME) PetscCall(PetscStrncpy((char *)place, text, OPTION_MAX_NAME));
   if (o->type == OPT_REAL) *(PetscReal *)place = *x;

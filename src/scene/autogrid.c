@@ -128,7 +128,8 @@ static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
   if (error == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SCENE_TEXT(scene, errors, leaves));
   PetscCall(SCENE_TEXT(scene, rows, what));
-  PetscFunctionReturn(PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what));
+  PetscCall(PetvesSay(scene->comm, "  nearest wall: %.3g cells, which leaves %s: %s\n", (double)(gap / h), leaves, what));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SceneReportGrid(Scene scene) {
@@ -150,7 +151,10 @@ PetscErrorCode SceneReportGrid(Scene scene) {
     {some, "TOO COARSE for %g, take R0/h = %g, -domain_cells %.0f,%.0f%s", {wanted, enough, finer[0], finer[1]}, {or_markers}},
     {1, "no grid up to R0/h = %g reached %g", {enough, wanted}}};
   PetscFunctionBeginUser;
-  if (FluidSpecIsFree(&scene->fluid)) return PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n");
+  if (FluidSpecIsFree(&scene->fluid)) {
+    PetscCall(PetvesSay(scene->comm, "  grid: none, unbounded fluid: enough\n"));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SCENE_TEXT(scene, errors, leaves));
   PetscCall(SCENE_TEXT(scene, rows, what));
   PetscCall(PetvesSay(scene->comm, "  grid: R0/h = %.3g, %s: %s\n", (double)cells, leaves, what));

@@ -279,7 +279,8 @@ static PetscErrorCode SceneCheckVesicles(Scene s) {
   PetscCall(REFUSE(s, shapes));
   if (!file) PetscCall(SceneCheckKinds(s, "-vesicle_semi_axes", 2)); /* how many a file has is known later */
   for (size_t k = 0; k < sizeof(kinds) / sizeof(kinds[0]) && !file; k++) PetscCall(SceneCheckKinds(s, kinds[k], 1));
-  PetscFunctionReturn(REFUSE(s, markers));
+  PetscCall(REFUSE(s, markers));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Unbounded fluid: the step is dense work on the markers alone; there is no grid on which a fluid with inertia or a
@@ -327,7 +328,8 @@ PetscErrorCode SceneCheckBodies(Scene s) {
   PetscCall(SceneCheckList(s, "-vesicle_density_difference", 1, entries, what, "a vesicle"));
   PetscCall(REFUSE(s, forces));
   if (vesicles) PetscCall(SceneCheckList(s, "-vesicle_viscosity_ratio", 1, entries, what, "a vesicle or kind"));
-  PetscFunctionReturn(REFUSE(s, viscosities));
+  PetscCall(REFUSE(s, viscosities));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */
 

@@ -178,7 +178,8 @@ static PetscErrorCode ObstaclesCheckCrossing(Scene scene, const PetscReal period
      "-vesicle_center: vesicle %.0f crosses obstacle %.0f; allowed: vesicles in the fluid", {a + 1, b}},
     {a >= n,
      "-obstacle_shape: obstacles %.0f and %.0f cross; allowed: curves apart from one another, from themselves and from their images", {a - n + 1, b}}};
-  PetscFunctionReturn(REFUSE(scene, rules));
+  PetscCall(REFUSE(scene, rules));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define MOST_FLUX 1e-6 /* of the sum of |U| ds */

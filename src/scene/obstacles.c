@@ -77,7 +77,8 @@ static PetscErrorCode ArcCut(Scene scene, PetscInt b, const Curve *c, PetscReal 
      "-obstacle_shape: obstacle %.0f rises %.3g cells from its wall; allowed: at least %.0f", {b + 1, most / h, LEAST_RISE}},
     {least < height * (1 - 1e-6),
      "-obstacle_shape: obstacle %.0f comes back to its wall between its ends; allowed: a curve of its own for each bump", {b + 1}}};
-  PetscFunctionReturn(REFUSE(scene, rules));
+  PetscCall(REFUSE(scene, rules));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */
 
@@ -164,7 +165,8 @@ static PetscErrorCode ObstaclesMakePosts(Scene scene, Outlines *o) {
     {!count && own->center.n % 2, "-obstacle_center {-obstacle_center}: not pairs; allowed: x,y of each post"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(scene, rules));
-  PetscFunctionReturn(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
+  PetscCall(ObstaclesMakeCircles(scene, count ? count : own->center.n / 2, o));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ObstaclesMakeCouette(Scene scene, Outlines *o) {

@@ -65,7 +65,8 @@ static PetscErrorCode PackedCheckPosts(Scene s) {
      "-obstacle_count {-obstacle_count}: not with -vesicle_packing_type lattice; allowed: random"}};
   PetscFunctionBeginUser;
   PetscCall(REFUSE(s, rules));
-  PetscFunctionReturn(SceneCheckList(s, "-obstacle_radius", 1, s->obstacles.posts.count, "obstacles", "each"));
+  PetscCall(SceneCheckList(s, "-obstacle_radius", 1, s->obstacles.posts.count, "obstacles", "each"));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode PackedCheckRoom(Scene s, PetscInt vesicles, PetscReal gap, PetscReal part) {
@@ -120,11 +121,11 @@ static PetscErrorCode ScenePack(Draft scene, const Kinds *kinds, PetscInt posts,
 
 PetscErrorCode ScenePlace(Draft scene, const Kinds *kinds, Pose pose[]) {
   const PetscInt posts = scene->obstacles.shape == OBSTACLE_POSTS ? scene->obstacles.posts.count : 0;
+  const PetscBool packed = posts || (scene->vesicles.packing > 0 && scene->vesicles.shape == SHAPE_ELLIPSE);
   PetscFunctionBeginUser;
   if (posts) PetscCall(PackedCheckPosts(scene));
-  if (posts || (scene->vesicles.packing > 0 && scene->vesicles.shape == SHAPE_ELLIPSE))
-    PetscFunctionReturn(ScenePack(scene, kinds, posts, pose));
-  for (PetscInt v = 0; v < kinds->vesicles; v++) {
+  if (packed) PetscCall(ScenePack(scene, kinds, posts, pose));
+  for (PetscInt v = 0; v < kinds->vesicles && !packed; v++) {
     for (int c = 0; c < 2; c++) pose[v].center[c] = ListEntry(&scene->vesicles.center, 2, v, c);
     VesicleDirection(scene, v, pose[v].along);
   }

@@ -91,7 +91,8 @@ static PetscErrorCode SceneCheckSpace(Scene s) {
     {s->space.spheroid == SPHEROID_CAPSULE && ListLargest(&s->space.reduced_volume) > CAPSULE_MOST,
      "-vesicle_reduced_volume {-vesicle_reduced_volume}: too round for -vesicle_spheroid capsule; allowed: up to 0.97"},
     {directionless, "-vesicle_axis {-vesicle_axis}: 0,0,0 is no direction; allowed: any other"}};
-  PetscFunctionReturn(REFUSE(s, rules));
+  PetscCall(REFUSE(s, rules));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What a scene of bodies of revolution about x cannot have; the flow in a tube. */

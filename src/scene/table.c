@@ -281,8 +281,9 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;
   scene->options.missing = SceneSpaceMissing;
-  PetscFunctionReturn(OptionsRead(comm, "petves: vesicles and capsules in viscous flow", TABLE_SIZE, table,
+  PetscCall(OptionsRead(comm, "petves: vesicles and capsules in viscous flow", TABLE_SIZE, table,
                                   scene_defaults, &scene->options, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 const OptionRow *SceneOptionRow(PetscInt i) {
@@ -308,5 +309,6 @@ PetscErrorCode SceneWriteOptions(Scene scene, FILE *file) {
     skip[skipped++] = "-vesicle_radius";
     skip[skipped++] = "-vesicle_reduced_volume";
   }
-  PetscFunctionReturn(OptionsWrite(&scene->options, scene, skip, file));
+  PetscCall(OptionsWrite(&scene->options, scene, skip, file));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

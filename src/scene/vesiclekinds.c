@@ -73,7 +73,8 @@ static PetscErrorCode KindMarkerCount(Scene scene, const Kind *kind, PetscBool s
      "-vesicle_markers %g: markers %g h apart with -delta_type {-delta_type}; allowed: at least %g h (-vesicle_allow_close_markers goes on)", {own->markers, apart, least}},
     {close && own->spacing > 0,
      "-vesicle_spacing %g: markers %g h apart with -delta_type {-delta_type}; allowed: at least %g h (-vesicle_allow_close_markers goes on)", {spacing, apart, least}}};
-  PetscFunctionReturn(REFUSE(scene, few));
+  PetscCall(REFUSE(scene, few));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */
 

@@ -119,7 +119,8 @@ static PetscErrorCode VesiclesCheckOverlap(Scene scene, const Shape *s) {
      "-domain_box: vesicle %.0f crosses itself or its periodic image; allowed: curves that do not, in a box that holds them", {pair[0] + 1}},
     {pair[0] >= 0,
      "-vesicle_center: vesicles %.0f and %.0f overlap; allowed: vesicles apart from one another", {pair[0] + 1, pair[1] + 1}}};
-  PetscFunctionReturn(REFUSE(scene, rules));
+  PetscCall(REFUSE(scene, rules));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 /* clang-format on */
 

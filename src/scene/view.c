@@ -86,6 +86,7 @@ static PetscErrorCode ViewFlow(Scene s, PetscViewer v) {
     {!channel && !strain && flow->type != FLOW_FORMULA, "background flow: {-flow_type}"}};
   return VIEW(s, v, rows);
 }
+
 static PetscErrorCode ViewVesicles(Scene s, PetscViewer v) {
   static const char *const derivatives[] = {"finite differences", "spectral bending", "spectral bending and edges"};
   const PetscInt n = s->shape.vesicles, *start = s->shape.start;
@@ -109,7 +110,8 @@ static PetscErrorCode ViewVesicles(Scene s, PetscViewer v) {
     {n && hard > 0 && soft >= hard, "bending: on, c_b = %g", {soft}},
     {n && hard > 0 && soft < hard, "bending: on, c_b = %g to %g", {soft, hard}},
     {n, "membrane: kernel {-delta_type}, %s, near field %s, area target %s", .word = {derivatives[s->membrane.derivative], ViewNearField(s), SceneHasAreaTarget(s) ? "on" : "off"}}};
-  PetscFunctionReturn(VIEW(s, v, rows));
+  PetscCall(VIEW(s, v, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ViewPlane(Scene s, PetscViewer v) {
