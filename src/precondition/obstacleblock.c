@@ -56,15 +56,84 @@ PetscErrorCode ObstacleBlockDestroy(ObstacleBlock *block) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cost of a new factor in iterations. With modes the inverse K counts. The near field's part of an iteration was
-   measured at 500 to 5000 markers of all bodies. */
+/* Whether the mobility is had from Stokes solves: an obstacle stands on a wall, which the table of a periodic box does
+   not know, and the stream function serves. */
+static PetscBool IsBySolves(ObstacleBlock b) {
+  const Fluid f = b->coupling->fluid;
+  if (!f->tridiagonal || (f->grid->wall[0] && !f->grid->wall[1])) return PETSC_FALSE;
+  for (PetscInt v = 0; v < b->obstacles->layout->bodies; v++)
+    if (b->obstacles->kind[v].type == CURVE_OPEN) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* A h^2 of the grid's own mobility with its near field, on root: the mobility applied to a unit force for each column.
+ */
+static PetscErrorCode MobilityBySolves(ObstacleBlock b, PetscReal A[]) {
+  const Coupling c = b->coupling;
+  const Layout l = b->obstacles->layout;
+  const PetscInt n = 2 * l->M, own = BodiesFirstObstacle(c->bodies);
+  PetscScalar *a;
+  Vec F, G, U;
+  PetscFunctionBeginUser;
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &F));
+  PetscCall(LayoutCreateVec(c->bodies->layout, 2, &U));
+  PetscCall(LayoutCreateVec(c->membrane->layout, 2, &G));
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCall(VecGetArray(F, &a));
+    for (PetscInt k = 0; k < 2 * l->n; k++) a[own + k] = k == j - 2 * l->first ? -PetscSqr(c->fluid->grid->h) : 0;
+    PetscCall(VecRestoreArray(F, &a));
+    PetscCall(MobilityApply(c->mobility, F, G, U));
+    PetscCall(VecGetArray(U, &a));
+    PetscCall(LayoutToRank(l, b->root, 2, a + own, l->rank == b->root ? A + j * n : b->all));
+    PetscCall(VecRestoreArray(U, &a));
+  }
+  PetscCall(VecDestroy(&F));
+  PetscCall(VecDestroy(&G));
+  PetscCall(VecDestroy(&U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A h^2 of the mean mobility, on root. */
+static PetscErrorCode MobilityByMean(ObstacleBlock b, PetscReal A[]) {
+  const Obstacles o = b->obstacles;
+  const MarkerRange solid = {o->all->M - o->layout->M, o->layout->M};
+  MeanMobility mobility;
+  PetscFunctionBeginUser;
+  PetscCall(MeanMobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
+  PetscCall(MeanMobilitySetUp(mobility, b->coupling->fluid->alpha));
+  PetscCall(MeanMobilityOnRoot(mobility, &solid, &solid, b->root, A));
+  PetscCall(MeanMobilityDestroy(&mobility));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cost of a new factor in iterations, those with the grid's own mobility by 2W solves. With modes the inverse K counts.
+   The near field's part of an iteration was measured at 500 to 5000 markers of all bodies. */
 static PetscReal ObstacleRenewalCost(ObstacleBlock b) {
   const Grid g = b->coupling->fluid->grid;
   const PetscReal cells = (PetscReal)g->n[0] * g->n[1], W = b->obstacles->layout->M;
   const PetscReal M = (PetscReal)b->coupling->bodies->layout->M,
                   modes = b->modes ? (PetscReal)ObstacleModesCount(b->modes) : 0;
   const PetscReal making = b->modes ? 2.5e-10 * modes * modes * modes : W * W * (5e-10 * W + 6e-7);
-  return making / (1.5e-8 * cells + 2e-9 * M * PetscMin(M, 5000) + 5e-5);
+  return (IsBySolves(b) ? 2 * W : 0) + making / (1.5e-8 * cells + 2e-9 * M * PetscMin(M, 5000) + 5e-5);
+}
+
+/* The whole block's inverse, on root. */
+static PetscErrorCode MakeObstacleInverse(ObstacleBlock b, PetscBool *failed) {
+  const Layout l = b->obstacles->layout;
+  const InnerFluid inner = b->coupling->mobility->inner;
+  PetscBool done = PETSC_TRUE;
+  PetscReal *A;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->n * b->n, &A));
+  PetscCall(IsBySolves(b) ? MobilityBySolves(b, A) : MobilityByMean(b, A));
+  if (l->rank == b->root) {
+    PetscCall(FreeBodiesBlock(b->obstacles, 0, l->bodies, b->coupling->fluid->grid->h, b->age.made_for,
+                              inner ? inner->mass : NULL, A));
+    PetscCall(SymmetricInvert(b->n, A, b->inverse, &done));
+  }
+  PetscCall(PetscFree(A));
+  PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* y = A^-1 x of the block's approximation, on root. */
@@ -78,21 +147,16 @@ static PetscErrorCode InvertObstacles(ObstacleBlock b, float x[], float y[]) {
 }
 
 static PetscErrorCode MakeObstacleFactor(ObstacleBlock b, PetscBool *failed) {
-  const Layout l = b->obstacles->layout;
-  MeanMobility mobility;
   PetscLogEvent event;
   PetscFunctionBeginUser;
   PetscCall(PetvesEvent("FactorObstacles", &event));
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   AgeRenew(&b->age, b->coupling->fluid->alpha);
   PetscCall(InstantCopy(b->obstacles->at, &b->made_at));
-  PetscCall(MeanMobilityCreate(b->spec, b->coupling, PETSC_MAX_REAL, &mobility));
-  PetscCall(MeanMobilitySetUp(mobility, b->age.made_for));
   if (b->modes)
-    PetscCall(ObstacleModesSetUp(b->modes, mobility, b->age.made_for, failed));
+    PetscCall(ObstacleModesSetUp(b->modes, b->age.made_for, failed));
   else
-    PetscCall(ObstaclesInvert(mobility, b->age.made_for, 0, l->bodies, b->root, b->inverse, failed));
-  PetscCall(MeanMobilityDestroy(&mobility));
+    PetscCall(MakeObstacleInverse(b, failed));
   PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

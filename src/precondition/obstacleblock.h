@@ -2,7 +2,7 @@
        A = E G E^T/h^2 + C + D + beta N N^T
    between their markers, G the Stokes solution operator, C the near field, D its box part, N the normals. Few markers
    have its dense inverse in single precision, many an approximation by shapes of curves (obstaclemodes.h). E G E^T is
-   that of meanmobility.h.
+   that of meanmobility.h, or, where an obstacle stands on a wall, the grid's own, by Stokes solves.
 
    While obstacles rest in quasi-steady flow the factor is made once. For bodies that move it is the one of an earlier
    time, with forces and velocities turned with each body, because a body alone has one block wherever it is. In

@@ -120,34 +120,15 @@ static void FindShapes(ObstacleModes s) {
   }
 }
 
-PetscErrorCode ObstaclesInvert(MeanMobility mobility, PetscReal alpha, PetscInt begin, PetscInt end, PetscMPIInt root,
-                               float inverse[], PetscBool *failed) {
-  const Coupling c = mobility->coupling;
-  const Obstacles o = c->bodies->obstacles;
-  const InnerFluid inner = c->mobility->inner;
-  const PetscInt first = o->layout->start[begin], n = o->layout->start[end] - first;
-  const MarkerRange own = {o->all->M - o->layout->M + first, n};
-  PetscBool done = PETSC_TRUE;
-  PetscInt numbers = 2 * n;
-  PetscReal *A;
-  PetscFunctionBeginUser;
-  for (PetscInt b = begin; b < end; b++) numbers += o->motion[b].free ? 3 : 0;
-  PetscCall(PetscMalloc1(numbers * numbers, &A));
-  PetscCall(MeanMobilityOnRoot(mobility, &own, &own, root, A));
-  PetscCall(FreeBodiesBlock(o, begin, end, c->fluid->grid->h, alpha, inner ? inner->mass : NULL, A));
-  if (o->layout->rank == root) PetscCall(SymmetricInvert(numbers, A, inverse, &done));
-  PetscCall(PetscFree(A));
-  PetscCall(AgreeFlag(o->layout->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* D^-1 Q and G of a shape from D^-1, on root. */
-static PetscErrorCode AnswerPoints(CurveShape *q) {
+/* D^-1, D^-1 Q and G of a shape from D, on root. */
+static PetscErrorCode InvertCurve(CurveShape *q, const PetscReal D[], PetscBool *done) {
   const PetscInt n = q->numbers, m = 2 * q->curve.points, markers = q->curve.n;
   float *single;
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(SymmetricSize(n), &q->inverse, m * n, &q->answer, m * m, &q->G));
   PetscCall(PetscCalloc1(n, &single));
-  for (PetscInt j = 0; j < m; j++) {
+  PetscCall(SymmetricInvert(n, D, q->inverse, done));
+  for (PetscInt j = 0; j < m && *done; j++) {
     float *answer = q->answer + j * n;
     for (PetscInt k = 0; k < 2 * markers; k++)
       single[k] = k % 2 == j % 2 ? (float)q->curve.to_markers[j / 2 * markers + k / 2] : 0;
@@ -162,22 +143,34 @@ static PetscErrorCode AnswerPoints(CurveShape *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MakeShapes(ObstacleModes s, MeanMobility mobility, PetscReal alpha, PetscBool *failed) {
+static PetscErrorCode MakeShapes(ObstacleModes s, PetscReal alpha, PetscBool *done) {
   const Obstacles o = s->coupling->bodies->obstacles;
+  const InnerFluid inner = s->coupling->mobility->inner;
+  MeanMobility mobility;
+  PetscReal *D;
   PetscFunctionBeginUser;
-  *failed = PETSC_FALSE;
+  *done = PETSC_TRUE;
   PetscCall(FreeShapes(s));
   FindShapes(s);
-  for (PetscInt k = 0; k < s->shapes && !*failed; k++) {
+  PetscCall(MeanMobilityCreate(s->spec, s->coupling, PETSC_MAX_REAL, &mobility));
+  PetscCall(MeanMobilitySetUp(mobility, alpha));
+  for (PetscInt k = 0; k < s->shapes; k++) {
     CurveShape *q = &s->shape[k];
-    const PetscInt n = LayoutCount(o->layout, q->like), modes = s->start[q->like + 1] - s->start[q->like];
-    PetscCall(CurvePointsCreate(o->kind[q->like].type == CURVE_OPEN, n, modes / 2, &q->curve));
+    const PetscInt n = LayoutCount(o->layout, q->like);
+    const MarkerRange own = {o->all->M - o->layout->M + o->layout->start[q->like], n};
+    PetscBool good = PETSC_TRUE;
+    PetscCall(CurvePointsCreate(o->kind[q->like].type == CURVE_OPEN ? PETSC_TRUE : PETSC_FALSE, n,
+                                (s->start[q->like + 1] - s->start[q->like]) / 2, &q->curve));
     q->numbers = 2 * n + (o->motion[q->like].free ? 3 : 0);
+    PetscCall(PetscMalloc1(q->numbers * q->numbers, &D));
+    PetscCall(MeanMobilityOnRoot(mobility, &own, &own, s->root, D));
     PetscCall(
-        PetscMalloc3(SymmetricSize(q->numbers), &q->inverse, modes * q->numbers, &q->answer, modes * modes, &q->G));
-    PetscCall(ObstaclesInvert(mobility, alpha, q->like, q->like + 1, s->root, q->inverse, failed));
-    if (o->layout->rank == s->root && !*failed) PetscCall(AnswerPoints(q));
+        FreeBodiesBlock(o, q->like, q->like + 1, s->coupling->fluid->grid->h, alpha, inner ? inner->mass : NULL, D));
+    if (o->layout->rank == s->root) PetscCall(InvertCurve(q, D, &good));
+    if (!good) *done = PETSC_FALSE;
+    PetscCall(PetscFree(D));
   }
+  PetscCall(MeanMobilityDestroy(&mobility));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -240,17 +233,16 @@ static PetscErrorCode MakeK(ObstacleModes s, PetscReal M[], PetscBool *done) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ObstacleModesSetUp(ObstacleModes s, MeanMobility mobility, PetscReal alpha, PetscBool *failed) {
+PetscErrorCode ObstacleModesSetUp(ObstacleModes s, PetscReal alpha, PetscBool *failed) {
   const Layout l = s->coupling->bodies->obstacles->layout;
   const PetscInt n = ObstacleModesCount(s);
-  PetscBool done = PETSC_TRUE;
+  PetscBool done;
   PetscReal *M;
   PetscFunctionBeginUser;
-  PetscCall(MakeShapes(s, mobility, alpha, failed));
-  if (*failed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MakeShapes(s, alpha, &done));
   PetscCall(PetscMalloc1(n * n, &M));
   PetscCall(AssembleModes(s, alpha, M));
-  if (l->rank == s->root) PetscCall(MakeK(s, M, &done));
+  if (l->rank == s->root && done) PetscCall(MakeK(s, M, &done));
   PetscCall(PetscFree(M));
   PetscCall(AgreeFlag(l->comm, done ? PETSC_FALSE : PETSC_TRUE, failed));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,13 +20,9 @@ PETSC_EXTERN PetscErrorCode ObstacleModesCreate(const FluidSpec *spec, Coupling 
                                                 ObstacleModes *modes);
 PETSC_EXTERN PetscErrorCode ObstacleModesDestroy(ObstacleModes *modes);
 
-/* ObstaclesInvert - the inverse (symmetric.h) of the block of curves begin .. end - 1 alone, on root, in the fluid of
-   coefficient alpha that the mobility has been set up for, where the coupling has been placed. ObstacleModesSetUp - the
-   matrices for the same. failed, on every rank, when a matrix is singular. Collective. */
-PETSC_EXTERN PetscErrorCode ObstaclesInvert(MeanMobility mobility, PetscReal alpha, PetscInt begin, PetscInt end,
-                                            PetscMPIInt root, float inverse[], PetscBool *failed);
-PETSC_EXTERN PetscErrorCode ObstacleModesSetUp(ObstacleModes modes, MeanMobility mobility, PetscReal alpha,
-                                               PetscBool *failed);
+/* ObstacleModesSetUp - for the fluid's coefficient alpha, where the coupling has been placed; failed, on every rank,
+   when a matrix is singular. Collective. */
+PETSC_EXTERN PetscErrorCode ObstacleModesSetUp(ObstacleModes modes, PetscReal alpha, PetscBool *failed);
 
 /* ObstacleModesApply - y = A^-1 x, [2W + 3 free] each, on root. Not collective. ObstacleModesCount - how many there
  * are. */
