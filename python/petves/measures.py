@@ -37,7 +37,7 @@ def deformation(markers: np.ndarray) -> np.ndarray:
 def half_periods(time: np.ndarray, inclination: np.ndarray) -> np.ndarray:
     """Return the times between passes of a tumbling vesicle's long axis through the vertical; empty for fewer than two.
 
-    Time and inclination are columns of series.csv. Each pass is found by a cubic through two steps before and two after it.
+    `time` and `inclination` are columns of series.csv. Each pass is found by a cubic through two steps before and two after it.
     """
     time, angle = np.asarray(time), turned_angle(inclination)
     half = np.floor(angle / np.pi - 0.5)

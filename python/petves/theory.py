@@ -4,7 +4,7 @@ import numpy as np
 
 
 def ellipse_axes(reduced_area: float) -> tuple[float, float]:
-    """Return semi-axes a > b = 1/a of the ellipse of area pi with the reduced area V = 4 pi area/perimeter^2 in (0, 1)."""
+    """Return semi-axes a > b = 1/a of the ellipse of area pi; `reduced_area` is V = 4 pi area/perimeter^2, in (0, 1)."""
     angle = np.linspace(0, 2 * np.pi, 512, endpoint=False)
     low, high = 1.0, 1e3
     for _ in range(70):
