@@ -281,8 +281,8 @@ const char *const scene_alternatives[][2] = {{"-flow_chi", "-flow_rate"},
 PetscErrorCode SceneReadOptions(MPI_Comm comm, Draft scene) {
   PetscFunctionBeginUser;
   scene->options.missing = SceneSpaceMissing;
-  PetscCall(OptionsRead(comm, "petves: vesicles and capsules in viscous flow", TABLE_SIZE, table,
-                                  scene_defaults, &scene->options, scene));
+  PetscCall(OptionsRead(comm, "petves: vesicles and capsules in viscous flow", TABLE_SIZE, table, scene_defaults,
+                        &scene->options, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
