@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 #: What the tests share, the package, and the studies of docs/.
 sys.path[:0] = [str(ROOT / folder) for folder in ("tests/support", "python", "")]
 
-from harness import SANITIZE, preloaded, run_petves  # noqa: E402
+from harness import run_petves  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -36,25 +36,13 @@ LONG += "metamorphic studies fuzz pictures chart coupled unlike_ranks forged pac
 LONG += "python python_package interrupted free_bodies elastic obstacles contrast baselines".split()
 
 
-#: Ranks that wait sleep. One that yields waits for the whole turn of the other worker's process on its core.
-PATIENT = """
-#include <sched.h>
-#include <time.h>
-int sched_yield(void) { return nanosleep(&(struct timespec){0, 1000}, 0); }
-"""
-
-
 def pytest_configure(config):
     """`make test` has two workers (pytest-xdist). The process that starts them makes the folder of their locks."""
     config.addinivalue_line("markers", "alone: measures time, so that no other test may run meanwhile")
     config.addinivalue_line("markers", "xdist_group(name): tests of one name run on one worker, and share its runs")
-    if hasattr(config, "workerinput"):
-        return
-    config.petves_files = tempfile.TemporaryDirectory(prefix="petves-tests-")
-    if config.getoption("numprocesses", None):
-        os.environ["PETVES_TEST_LOCKS"] = config.petves_files.name
-    if not SANITIZE:
-        os.environ["PETVES_TEST_PATIENT"] = preloaded(Path(config.petves_files.name), PATIENT)
+    if not hasattr(config, "workerinput") and config.getoption("numprocesses", None):
+        config.petves_locks = tempfile.TemporaryDirectory(prefix="petves-tests-")
+        os.environ["PETVES_TEST_LOCKS"] = config.petves_locks.name
 
 
 def pytest_collection_modifyitems(items):
@@ -107,8 +95,8 @@ def pytest_unconfigure(config):
     that started them."""
     if hasattr(config, "workerinput"):
         return
-    config.petves_files.cleanup()
-    for name in ("PETVES_TEST_LOCKS", "PETVES_TEST_PATIENT"):
-        os.environ.pop(name, None)
+    if hasattr(config, "petves_locks"):
+        config.petves_locks.cleanup()
+        os.environ.pop("PETVES_TEST_LOCKS")
     if not config.option.collectonly:
         print(f"{len(_passed - _failed)} passed, {len(_failed)} failed", flush=True)
