@@ -182,7 +182,7 @@ def test_a_run_begins_where_another_ended(tmp_path):
     first = petves.load(run_petves(tmp_path / "first", pair).folder, kind="numpy")
     file = tmp_path / "last.txt"
     file.write_text(coefficient_lines(first.coefficients[-1]))
-    options = f"{SPACE} -vesicle_file {file} -sphere_label_rate 1 -time_step 0.2 -time_end 0.2"
+    options = f"{SPACE} -vesicle_file {file} -time_step 0.2 -time_end 0.2"
     run = run_petves(tmp_path / "on", options)
     again = petves.load(run.folder, kind="numpy")
     assert np.array_equal(again.coefficients[0], first.coefficients[-1])
