@@ -112,7 +112,7 @@ static PetscErrorCode AutoReportWall(Scene scene, AutoFluid fluid) {
   const Shape *shape = &scene->shape;
   const CurveRoom room = SceneRoom(scene);
   char what[PETVES_MAX_MESSAGE], leaves[PETVES_MAX_MESSAGE];
-  PetscInt side, cells[2];
+  PetscInt side, cells[2] = {0, 0};
   const PetscReal gap = CurveWallGap(shape->start[shape->vesicles], shape->X, &room, &side);
   const PetscReal error = gap < PETSC_MAX_REAL ? WallError(fluid, gap / R0, h / R0) : 0;
   const PetscBool finer = SceneWallCells(fluid, scene->fluid.box, h, R0, gap, wanted, cells);
@@ -137,7 +137,7 @@ PetscErrorCode SceneReportGrid(Scene scene) {
   const AutoFluid fluid = SceneAutoFluid(scene, scene->shape.longest / (2 * PETSC_PI));
   char what[PETVES_MAX_MESSAGE], leaves[PETVES_MAX_MESSAGE];
   PetscBool many = PETSC_TRUE;
-  PetscInt finer[2];
+  PetscInt finer[2] = {0, 0};
   for (PetscInt v = 0; v < scene->shape.vesicles; v++)
     if (scene->shape.start[v + 1] - scene->shape.start[v] < MARKERS) many = PETSC_FALSE;
   const PetscReal error = GridError(fluid, cells, many), enough = SceneCellsFor(fluid, wanted, many);

@@ -82,10 +82,8 @@ PetscReal FlowShearRate(const Flow *flow) {
   return 0;
 }
 
-#define POINTS 7 /* in x, and in y, in the box */
-#define STEP                                                                                                           \
-  1e-3 /* of the differences, in cells, in three dimensions over R: their error is a millionth of the flow's change    \
-          over a cell */
+#define POINTS 7       /* in x, and in y, in the box */
+#define STEP 1e-3      /* of the differences, in cells, or in three dimensions over R */
 #define TOLERATED 1e-3 /* divergence over the largest gradient: flows from tables of numbers have some */
 #define ROUNDOFF 1e-11 /* of a velocity, which differences show too */
 #define LATER 0.618    /* of the end time: where formulas are looked at too, for a flow that begins at rest */

@@ -137,4 +137,5 @@ def test_wall_of_a_tube_is_drawn():
     assert (
         tube_radius(SimpleNamespace(options=lambda: {"tube_radius": "1.5", "tube_throat": "0"}), np.ones(2)) == 1.5
     ).all()
-    assert tube_radius(SimpleNamespace(options=dict), np.ones(2)) is None
+    for nothing in ({}, {"tube_radius": "0"}):  # of -dim 3, and of -dim axisymmetric
+        assert tube_radius(SimpleNamespace(options=lambda: nothing), np.ones(2)) is None

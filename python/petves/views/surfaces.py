@@ -41,9 +41,9 @@ def smooth_surfaces(run: SurfaceRun, frame: int) -> np.ndarray:
 def tube_radius(run: SurfaceRun, x: np.ndarray) -> np.ndarray | None:
     """Return the radius of the wall at places x along a circular tube (length), shape of x; None in unbounded fluid."""
     tube = {name[5:]: float(value) for name, value in run.options().items() if name.startswith("tube_")}
-    if not tube:
+    if not tube.get("radius"):
         return None
-    depth = tube["radius"] - tube["throat"] if tube["throat"] else 0
+    depth = tube["radius"] - tube["throat"] if tube.get("throat") else 0
     out = np.abs(x - tube.get("throat_center", 0)) - tube.get("throat_length", 0) / 2
     along = np.clip(out / (tube.get("throat_mouth") or tube["radius"]), 0, 1)
     return tube["radius"] - depth * (1 + np.cos(np.pi * along)) / 2

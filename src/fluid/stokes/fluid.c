@@ -66,8 +66,8 @@ static void WallMomentum(const FluidSpec *spec, Fluid f, int c, PetscScalar bc1[
     }
 }
 
-/* The divergence of u_inf is zero on the grid too: that of the faces off the walls is minus the wall faces' part, bc2.
- */
+/* The flows that walls move with (FlowType) are at most quadratic across themselves: their divergence is zero on the
+   grid too, and that of the faces off the walls is minus the wall faces' part, bc2. */
 static PetscErrorCode CreateWallData(const FluidSpec *spec, Fluid f) {
   PetscScalar *a, *b;
   PetscFunctionBeginUser;

@@ -87,8 +87,9 @@ static PetscErrorCode StreamSetUp(Stream s) {
 const PetscReal *StreamProfile(Stream s) {
   const PetscInt n = s->fluid->grid->n[1];
   const PetscReal alpha = s->fluid->alpha, off = -s->fluid->nu / PetscSqr(s->fluid->grid->h);
-  PetscReal *b = s->profile, *c = b + n, mean = 0;
+  PetscReal *b = s->profile, mean = 0;
   if (!b || s->profile_alpha == alpha) return b;
+  PetscReal *c = b + n;
   s->profile_alpha = alpha;
   for (PetscInt j = 0; j < n; j++) {
     const PetscReal diagonal = alpha - off * (j == 0 || j == n - 1 ? 3 : 2);
