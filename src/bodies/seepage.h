@@ -5,18 +5,14 @@
 
        -(P/l) n n^T F + P (osmotic_in A0/A - osmotic_out) n,
 
-   F minus the force times the marker's share l of the length, A the area and A0 its first value. The matrix is
-   symmetric and semidefinite, as that of the mobility is, and joins it. No area is aimed at then. Nothing crosses
-   ranks. */
+   F minus the force times the marker's share l of the length, A the area and A0 its first value. The matrix of F is
+   symmetric and semidefinite, as that of the mobility is. No area is aimed at then. Nothing crosses ranks. */
 #pragma once
-#include "bodies/membrane.h"
+#include "bodies/law.h"
 
-/* SeepageApply - U += alpha (P/l) n n^T F of the own vesicles, at the markers X[2M] of all; F[2n] and U[2n] are own
-   parts. SeepageAdd - the same matrix of one vesicle with markers X[2n], times alpha, added to K, whose columns have
-   `rows` numbers. SeepageOsmotic - U += the osmotic velocity of the own vesicles, at
-   their markers X[2n]. Not collective. */
-PETSC_EXTERN void SeepageApply(Membrane membrane, const PetscReal X[], PetscReal alpha, const PetscScalar F[],
-                               PetscScalar U[]);
-PETSC_EXTERN void SeepageAdd(Membrane membrane, PetscInt vesicle, const PetscReal X[], PetscReal alpha, PetscInt rows,
-                             PetscReal K[]);
-PETSC_EXTERN void SeepageOsmotic(Membrane membrane, const PetscReal X[], PetscScalar U[]);
+/* SeepageAdd - U += alpha times this velocity of the own vesicles at their markers X[2n], F[2n] and U[2n] own parts;
+   F NULL: without the first term; osmotic false: without the second one. SeepageBlock - M += h^2 B (P/l) n n^T of the
+   vesicles of a law with markers X[2n], M[2n][2n] column behind column, B[2n][2n] row behind row. Not collective. */
+PETSC_EXTERN void SeepageAdd(Membrane membrane, PetscReal alpha, PetscBool osmotic, const PetscReal X[],
+                             const PetscScalar F[], PetscScalar U[]);
+PETSC_EXTERN void SeepageBlock(MembraneLaw law, const PetscReal X[], const PetscReal B[], PetscReal M[]);

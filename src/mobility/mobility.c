@@ -1,5 +1,4 @@
 #include "mobility/mobility.h"
-#include "bodies/seepage.h"
 #include "markers/streamresponse.h"
 
 /* Inner fluid and markers. E smooths the grid's velocity, which the spreading has smoothed, by `smoothed` times its
@@ -87,10 +86,9 @@ PetscErrorCode MobilityPlace(Mobility m, PetscReal a0, Vec X) {
 PetscErrorCode MobilityAddLayers(Mobility m, Vec F, Vec G, PetscScalar U[]) {
   const PetscScalar *a;
   PetscFunctionBeginUser;
-  if (F) {
+  if (m->near && F) {
     PetscCall(VecGetArrayRead(F, &a));
-    if (m->near) PetscCall(NearFieldApply(m->near, -1, a, U));
-    SeepageApply(m->bodies->membrane, m->markers->X, -1, a, U);
+    PetscCall(NearFieldApply(m->near, -1, a, U));
     PetscCall(VecRestoreArrayRead(F, &a));
   }
   if (m->contrast && G) PetscCall(DoubleLayerApply(m->contrast, 1, G, U));

@@ -88,14 +88,17 @@ static PetscErrorCode AddMembranes(Scheme s, PetscReal *const field[3]) {
   const NearField near = s->coupling->mobility->near;
   const DoubleLayer contrast = s->coupling->mobility->contrast;
   Layout layout;
-  Vec F, X;
+  Vec F, X, U;
   PetscFunctionBeginUser;
   if (!q->solved || !near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CellForces(s, &layout, &F, &X));
   PetscCall(SingleCellsCorrect(&near->set, &near->lattice, layout, F, X, field));
   PetscCall(VecDestroy(&F));
   PetscCall(VecDestroy(&X));
-  if (contrast) PetscCall(DoubleCellsCorrect(&near->set, contrast->lattice, contrast->ratio, q->U, q->X, field));
+  if (!contrast) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchemeFluidAtMarkers(s, &U));
+  PetscCall(DoubleCellsCorrect(&near->set, contrast->lattice, contrast->ratio, U, q->X, field));
+  PetscCall(VecDestroy(&U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

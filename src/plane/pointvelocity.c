@@ -1,6 +1,7 @@
 #include "plane/pointvelocity.h"
 #include "base/agree.h"
 #include "plane/cells.h"
+#include "scheme/fields.h"
 
 /* u_inf[2n] at n points; all ranks stop alike. */
 static PetscErrorCode PointFlow(Scheme s, PetscInt n, const PetscReal X[], PetscReal u[]) {
@@ -30,11 +31,10 @@ static PetscErrorCode PointCells(PointVelocity *p) {
 
 static PetscErrorCode PointLayers(PointVelocity *p) {
   const Scheme s = p->scheme;
-  const State *q = &s->state;
   const DoubleLayer contrast = s->coupling->mobility->contrast;
   const PetscReal nu = s->scene->fluid.nu;
   PetscReal *X, *F, *J;
-  Vec forces, markers;
+  Vec forces, markers, U;
   Layout l;
   PetscFunctionBeginUser;
   PetscCall(CellForces(s, &l, &forces, &markers));
@@ -43,7 +43,9 @@ static PetscErrorCode PointLayers(PointVelocity *p) {
   PetscCall(PetscMalloc3(2 * l->M, &X, 2 * l->M, &F, 2 * s->membrane->layout->M, &J));
   PetscCall(LayoutGatherVec(l, markers, X));
   PetscCall(LayoutGatherVec(l, forces, F));
-  PetscCall(LayoutGatherVec(s->membrane->layout, q->U, J));
+  PetscCall(SchemeFluidAtMarkers(s, &U));
+  PetscCall(LayoutGatherVec(s->membrane->layout, U, J));
+  PetscCall(VecDestroy(&U));
   PetscCall(VecDestroy(&forces));
   PetscCall(VecDestroy(&markers));
   for (PetscInt v = 0; v < l->bodies; v++) {

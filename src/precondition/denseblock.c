@@ -18,7 +18,7 @@ PetscErrorCode DenseBlockDestroy(DenseBlock *q) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of vesicle v alone: q->K = M D^T, N = M K/(h^2 a0) of the forces' K. M is symmetric. */
+/* Of vesicle v alone: q->K = M D^T, N = M K/(h^2 a0) of the forces' K. */
 static PetscErrorCode AssembleVesicle(DenseBlock *q, PetscReal a0, PetscInt v, const PetscReal Mob[]) {
   const Layout l = q->law->membrane->layout;
   const PetscInt rows = 2 * q->law->n, n = LayoutCount(l, v), own = l->start[v] - q->law->first;

@@ -62,15 +62,15 @@ PetscErrorCode DenseBlocksDestroy(DenseBlocks *blocks) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What stands with V in its rows, transposed, in free space (ContrastMatrix): made for a block's owner. Collective
+/* B of the blocks, transposed, in free space (ContrastMatrix): made for a block's owner. Collective
    where the block is for all. */
-static PetscErrorCode AssembleMotion(DenseBlocks b, PetscReal a0, PetscInt first, PetscInt n, PetscReal **motion) {
+static PetscErrorCode AssembleMotion(DenseBlocks b, PetscInt first, PetscInt n, PetscReal **motion) {
   const Layout l = b->coupling->membrane->layout;
   PetscMPIInt size;
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(4 * n * n, &size));
   PetscCall(PetscCalloc1(4 * n * n, motion));
-  PetscCall(ContrastMatrix(b->coupling, PETSC_FALSE, a0, first, n, *motion));
+  PetscCall(ContrastMatrix(b->coupling, PETSC_FALSE, first, n, *motion));
   if (l->size > 1 && b->together)
     PetscCallMPI(
         MPI_Reduce(l->rank == b->root ? MPI_IN_PLACE : *motion, *motion, size, MPIU_REAL, MPI_SUM, b->root, l->comm));
@@ -129,7 +129,7 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
     PetscCall(MeanMobilityOnRoot(mobility, &all, &all, b->root, Mob));
     if (solid) PetscCall(ObstacleBlockCouple(solid, mobility, Mob, &singular));
     if (singular) good = PETSC_FALSE;
-    PetscCall(AssembleMotion(b, a0, 0, m->layout->M, &motion));
+    PetscCall(AssembleMotion(b, 0, m->layout->M, &motion));
   }
   for (PetscInt k = 0; k < b->count && good; k++) {
     const MembraneLaw law = b->block[k].law;
@@ -139,12 +139,10 @@ PetscErrorCode DenseBlocksFactor(DenseBlocks b, MeanMobility mobility, ObstacleB
       /* the box part does not change the iterations of one vesicle's block but costs more than the rest of it */
       if (b->coupling->mobility->near)
         PetscCall(NearFieldAdd(b->coupling->mobility->near, h2, PETSC_FALSE, &own, &own, Mob));
-      PetscCall(AssembleMotion(b, a0, law->first, law->n, &motion));
+      PetscCall(AssembleMotion(b, law->first, law->n, &motion));
     }
-    for (PetscInt v = law->vesicle; v < law->end; v++) {
-      const PetscInt at = 2 * (m->layout->start[v] - law->first);
-      SeepageAdd(m, v, b->coupling->markers->X + 2 * m->layout->start[v], h2, 2 * law->n, Mob + at * (2 * law->n + 1));
-    }
+    SeepageBlock(law, b->coupling->markers->X + 2 * law->first, motion, Mob);
+    PetscCall(ContrastTread(m, law->vesicle, law->end, b->coupling->treading + law->vesicle, a0, 2 * law->n, motion));
     PetscCall(DenseBlockFactor(&b->block[k], a0, Mob, motion, &good));
     if (!b->together) PetscCall(PetscFree(motion));
   }

@@ -19,7 +19,6 @@ static PetscErrorCode ShapeMotion(SharedShapes s, const SharedShape *q, PetscRea
   }
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++) motion[j * n + i] = (i == j ? weight : 0) - jump * D[i * n + j];
-  PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, n, motion));
   PetscCall(PetscFree3(D, normal, along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -90,8 +89,9 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(DenseBlockCreate(m, s->coupling->forces, s->coupling->fluid->grid->h, q->like, q->like + 1, &block));
   PetscCall(LayerSelf(&stokeslet, &s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, NULL, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
-  SeepageAdd(m, q->like, q->X, PetscSqr(s->coupling->fluid->grid->h), 2 * n, M);
   PetscCall(ShapeMotion(s, q, motion));
+  SeepageBlock(block.law, q->X, motion, M);
+  PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, 2 * n, motion));
   LawPlace(block.law, s->a0, q->X);
   PetscCall(DenseBlockFactor(&block, s->a0, M, motion, good));
   for (PetscInt j = 0; j < 2 * n; j++) V[j * 2 * n + j] = 1;

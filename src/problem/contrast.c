@@ -18,8 +18,7 @@ PetscErrorCode ContrastTread(Membrane m, PetscInt vesicle, PetscInt end, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContrastMatrix(Coupling c, PetscBool lattice, PetscReal a0, PetscInt first, PetscInt n,
-                              PetscReal out[]) {
+PetscErrorCode ContrastMatrix(Coupling c, PetscBool lattice, PetscInt first, PetscInt n, PetscReal out[]) {
   const Layout l = c->membrane->layout;
   const PetscInt begin = LayoutBody(l, first), end = LayoutBody(l, first + n - 1) + 1;
   PetscFunctionBeginUser;
@@ -33,6 +32,5 @@ PetscErrorCode ContrastMatrix(Coupling c, PetscBool lattice, PetscReal a0, Petsc
       out[j * 2 * n + i] = out[i * 2 * n + j];
       out[i * 2 * n + j] = kept;
     }
-  PetscCall(ContrastTread(c->membrane, begin, end, c->treading + begin, a0, 2 * n, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 #include "problem/coupling.h"
 #include "bodies/bending.h"
 #include "bodies/freebodies.h"
+#include "bodies/seepage.h"
 
 PetscErrorCode CouplingCopyVesicles(Coupling c, Vec from, Vec to) {
   PetscScalar *a, *b;
@@ -128,6 +129,18 @@ PetscErrorCode CouplingTread(Coupling c, PetscReal alpha, Vec X, Vec U) {
   PetscCall(VecGetArrayPair(X, U, &x, &u));
   MembraneTread(c->membrane, c->treading, alpha, x, u);
   PetscCall(VecRestoreArrayPair(X, U, &x, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplingSeep(Coupling c, PetscReal alpha, Vec X, Vec F, Vec U) {
+  const PetscScalar *f = NULL;
+  PetscScalar *x, *u;
+  PetscFunctionBeginUser;
+  if (F) PetscCall(VecGetArrayRead(F, &f));
+  PetscCall(VecGetArrayPair(X, U, &x, &u));
+  SeepageAdd(c->membrane, alpha, PETSC_TRUE, x, f, u);
+  PetscCall(VecRestoreArrayPair(X, U, &x, &u));
+  if (F) PetscCall(VecRestoreArrayRead(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -77,6 +77,10 @@ PETSC_EXTERN PetscErrorCode CouplingStepForce(Coupling coupling, Vec Y, Vec X, V
 /* CouplingTread - U += alpha V dX/dt, the velocity of markers by the labels' own motion. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingTread(Coupling coupling, PetscReal alpha, Vec X, Vec U);
 
+/* CouplingSeep - U += alpha times the velocity of the vesicles' markers X relative to the fluid, F minus the forces
+   (NULL: of osmotic pressures alone). Not collective. */
+PETSC_EXTERN PetscErrorCode CouplingSeep(Coupling coupling, PetscReal alpha, Vec X, Vec F, Vec U);
+
 /* CouplingStretching - d = Dm U/h^2. d and U are an edge vector and a marker vector. Not collective. */
 PETSC_EXTERN PetscErrorCode CouplingStretching(Coupling coupling, Vec U, Vec d);
 

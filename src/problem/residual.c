@@ -1,5 +1,6 @@
 #include "problem/residual.h"
 #include "bodies/freebodies.h"
+#include "bodies/seepage.h"
 
 /* (2) F = Dm^T sigma + (1/a0) K V of all forces (bodies/force.h), and the unknown F of obstacles; s->push[0] is minus
    the force of contact on free bodies. */
@@ -16,16 +17,19 @@ static PetscErrorCode ReducedForce(Reduced s, const PetscScalar x[], Vec F) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* G = V + (v/a0) dV/dt of the vesicles' markers, and what is known of their motion (NULL: without). */
-static PetscErrorCode ReducedMotion(Reduced s, const PetscScalar x[], Vec known, Vec G) {
+/* s->G = V + (v/a0) dV/dt + (P/l) n n^T F of the vesicles' markers, and what is known of it (NULL: without); s->F has
+   F of x. */
+static PetscErrorCode ReducedMotion(Reduced s, const PetscScalar x[], Vec known) {
   const Coupling c = s->unknowns->coupling;
-  PetscScalar *g;
+  const Membrane m = c->membrane;
+  PetscScalar *F, *g;
   PetscFunctionBeginUser;
-  PetscCall(VecGetArray(G, &g));
+  PetscCall(VecGetArrayPair(s->F, s->G, &F, &g));
   PetscCall(PetscArraycpy(g, x, s->unknowns->velocity));
-  MembraneTread(c->membrane, c->treading, 1 / c->fluid->a0, x, g);
-  PetscCall(VecRestoreArray(G, &g));
-  if (known) PetscCall(VecAXPY(G, 1, known));
+  MembraneTread(m, c->treading, 1 / c->fluid->a0, x, g);
+  SeepageAdd(m, -1, PETSC_FALSE, c->markers->X + 2 * m->layout->first, F, g);
+  PetscCall(VecRestoreArrayPair(s->F, s->G, &F, &g));
+  if (known) PetscCall(VecAXPY(s->G, 1, known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,7 +95,7 @@ static PetscErrorCode ReducedMult(Mat A, Vec x, Vec y) {
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(VecGetArrayPair(x, y, &xa, &ya));
   PetscCall(ReducedForce(s, xa, s->F));
-  PetscCall(ReducedMotion(s, xa, NULL, s->G));
+  PetscCall(ReducedMotion(s, xa, NULL));
   PetscCall(MobilityApply(s->unknowns->coupling->mobility, s->F, s->G, s->U));
   PetscCall(ReducedResidual(s, NULL, xa, ya));
   PetscCall(VecRestoreArrayPair(x, y, &xa, &ya));
@@ -113,11 +117,12 @@ PetscErrorCode ReducedAdd(Reduced s, Vec added, Vec x, Vec residual) {
   PetscCall(VecGetArrayRead(added, &a));
   PetscCall(ReducedForce(s, a, s->F));
   for (PetscInt k = 0; k < s->free; k++) s->push[1][k] += s->push[0][k];
-  PetscCall(ReducedMotion(s, a, NULL, s->G));
+  PetscCall(ReducedMotion(s, a, NULL));
   PetscCall(VecRestoreArrayRead(added, &a));
   PetscCall(MobilityAdd(s->unknowns->coupling->mobility, s->F, s->G, s->U));
   PetscCall(VecGetArrayRead(x, &a));
-  PetscCall(ReducedMotion(s, a, s->problem->known.G, s->G));
+  if (s->unknowns->coupling->membrane->permeability > 0) PetscCall(ReducedForce(s, a, s->F));
+  PetscCall(ReducedMotion(s, a, s->problem->known.G));
   PetscCall(VecGetArray(residual, &r));
   PetscCall(ReducedResidual(s, s->problem, a, r));
   PetscCall(VecRestoreArray(residual, &r));

@@ -75,8 +75,9 @@ static PetscErrorCode KnownForces(Scheme s, Coupled *d, const BDF *b) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = uhat - N(w*), minus the known forces F at Y = Xhat + u_inf/a0, the known motion u_inf + v dY/dt with the labels'
-   speed v, and k, u_inf less the obstacles' velocity. next.w is used for w*. */
+/* f = uhat - N(w*), minus the known forces F at Y = Xhat + u_inf/a0, the known motion u_inf + v dY/dt of the fluid at
+   membranes with the labels' speed v, less what seeps by F, and k, u_inf less the obstacles' velocity. next.w is used
+   for w*. The background of markers, but not of the fluid, has the osmotic velocity. */
 static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   const Obstacles obstacles = s->coupling->bodies->obstacles;
   Forcing *f = &d->next.forcing;
@@ -93,7 +94,9 @@ static PetscErrorCode RightHandSides(Scheme s, Coupled *d, const BDF *b) {
   PetscCall(CouplingStepForce(s->coupling, d->all, d->Xstar, NULL, d->force, d->load));
   if (d->place) PetscCall(KnownForces(s, d, b));
   PetscCall(CouplingCopyVesicles(s->coupling, s->background, d->known));
+  PetscCall(CouplingSeep(s->coupling, -1, d->Xstar, NULL, d->known));
   PetscCall(VecCopy(s->background, d->moved));
+  PetscCall(CouplingSeep(s->coupling, -1, d->Xstar, d->force, d->moved));
   PetscCall(CouplingTread(s->coupling, 1, d->Y, d->moved));
   if (obstacles) PetscCall(ObstaclesTarget(obstacles, &s->scene->flow, d->known, s->report.failure));
   if (d->convection) {
@@ -194,7 +197,7 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
     PetscCall(VecRestoreArrayRead(n->solid, &solid));
     PetscCall(VecRestoreArray(d->known, &F));
   }
-  PetscCall(StressMeasure(s, n->w, n->p, d->known, d->all, n->U));
+  PetscCall(StressMeasure(s, n->w, n->p, d->known, d->all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

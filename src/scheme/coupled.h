@@ -24,7 +24,7 @@ typedef struct {
   Vec place;             /* of free bodies, extrapolated; NULL without */
   PetscReal *load;       /* [3 own free] known force and torque on them; NULL without */
   Vec all;               /* markers of all bodies, work */
-  Vec moved;             /* known part of the markers' motion */
+  Vec moved;             /* known part of the fluid's motion at the vesicles' markers */
   Vec force;             /* minus the known part of the force on all bodies' markers */
   Vec V, known, Y;       /* solved part and known part of the markers' velocity, obstacles included; work */
   Vec P;                 /* the markers' velocity as the labels of the step see it */

@@ -34,3 +34,18 @@ PetscErrorCode SchemeFields(Scheme s) {
   if (now != q->a0) PetscCall(FluidSetTimeCoefficient(s->fluid, now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode SchemeFluidAtMarkers(Scheme s, Vec *U) {
+  const State *q = &s->state;
+  Vec F;
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(q->U, U));
+  PetscCall(VecCopy(q->U, *U));
+  if (s->membrane->permeability == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(q->X, &F));
+  PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, F));
+  PetscCall(VecScale(F, -1));
+  PetscCall(CouplingSeep(s->coupling, -1, q->X, F, *U));
+  PetscCall(VecDestroy(&F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -9,5 +9,9 @@
 PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
 
+/* SchemeFluidAtMarkers - the fluid's velocity at the vesicles' markers in a solved state: that of the markers, but for
+   the water that passes; a new vector. */
+PETSC_EXTERN PetscErrorCode SchemeFluidAtMarkers(Scheme scheme, Vec *U);
+
 /* SchemeFlows - what states that have a flow are turned into velocities by, borrowed. */
 PETSC_EXTERN StreamFlows SchemeFlows(Scheme scheme);

@@ -89,9 +89,12 @@ static PetscReal BackgroundFlux(Scheme s) {
 /* Mean of the solved field minus that of the velocity. They differ inside vesicles with a viscosity contrast, after the
    first step. */
 static PetscErrorCode InnerMean(Scheme s, PetscReal mean[2]) {
+  Vec U;
   PetscFunctionBeginUser;
   if (!s->coupling->mobility->contrast || !s->state.solved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DoubleLayerMean(s->coupling->mobility->contrast, s->state.U, mean));
+  PetscCall(SchemeFluidAtMarkers(s, &U));
+  PetscCall(DoubleLayerMean(s->coupling->mobility->contrast, U, mean));
+  PetscCall(VecDestroy(&U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

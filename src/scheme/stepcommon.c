@@ -1,5 +1,4 @@
 #include "scheme/stepcommon.h"
-#include "bodies/seepage.h"
 #include "base/agree.h"
 
 void SchemeImplement(Scheme s, const SchemeOps *ops, void *data) {
@@ -107,16 +106,6 @@ PetscErrorCode SchemeCheckBodies(Scheme s, Instant at) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* background += the osmotic velocity, of permeable membranes. */
-static PetscErrorCode AddOsmotic(Scheme s, Vec X) {
-  PetscScalar *x, *u;
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayPair(X, s->background, &x, &u));
-  SeepageOsmotic(s->membrane, x, u);
-  PetscCall(VecRestoreArrayPair(X, s->background, &x, &u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treading[], Instant at) {
   const char *failure = s->report.failure;
   PetscFunctionBeginUser;
@@ -128,7 +117,7 @@ PetscErrorCode SchemePlace(Scheme s, PetscReal a0, Vec X, const PetscReal treadi
   if (*failure || !CouplingHasMembrane(s->coupling)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchemeBackground(s, X, at.t));
   if (*failure) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AddOsmotic(s, X));
+  PetscCall(CouplingSeep(s->coupling, 1, X, NULL, s->background));
   PetscCall(CouplingStretching(s->coupling, s->background, s->g));
   PetscCall(VecScale(s->g, -1));
   PetscFunctionReturn(PETSC_SUCCESS);

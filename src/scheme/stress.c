@@ -86,7 +86,8 @@ static PetscErrorCode Shortfall(Scheme s, Vec F, PetscReal sum[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X, Vec U) {
+PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X) {
+  const Mobility m = s->coupling->mobility;
   const Grid g = s->fluid->grid;
   const PetscReal area = (g->hi[0] - g->lo[0]) * (g->hi[1] - g->lo[1]);
   const PetscReal scale = s->fluid->nu * s->scene->flow.rate;
@@ -97,7 +98,7 @@ PetscErrorCode StressMeasure(Scheme s, Vec w, Vec p, Vec F, Vec X, Vec U) {
   PetscCall(WallStress(s, w, p, &shear, &pressure));
   PetscCall(Stresslets(s, F, X, sum));
   PetscCall(Shortfall(s, F, near));
-  if (s->coupling->mobility->contrast) PetscCall(DoubleLayerStress(s->coupling->mobility->contrast, U, sum, near));
+  if (m->contrast) PetscCall(DoubleLayerStress(m->contrast, m->G, sum, near));
   out->viscosity[0] = 1 + (shear - near[0] / area) / scale;
   out->viscosity[1] = 1 - sum[2] / area / scale;
   out->normal[0] = pressure + (near[1] - sum[0]) / area;

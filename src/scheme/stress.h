@@ -10,6 +10,6 @@ PETSC_EXTERN PetscBool StressApplies(Scheme scheme);
 
 /* StressMeasure - fill in report.stress. The stress at the walls is that of velocity w and pressure p (NULL: from
    report.measures). The bodies' stress is that of F, minus their force times ds (length^3/time^2; marker vector of
-   all), at the markers X of all with the vesicles' velocity U, where the coupling has been placed. Both agree to
-   rounding in fluid without inertia. NaN in other scenes. Collective. */
-PETSC_EXTERN PetscErrorCode StressMeasure(Scheme scheme, Vec w, Vec p, Vec F, Vec X, Vec U);
+   all), at the markers X of all, where the coupling has been placed and a step solved. Both agree to rounding in fluid
+   without inertia. NaN in other scenes. Collective. */
+PETSC_EXTERN PetscErrorCode StressMeasure(Scheme scheme, Vec w, Vec p, Vec F, Vec X);

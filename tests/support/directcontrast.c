@@ -80,7 +80,8 @@ void DirectAddContrast(Direct *d) {
   const PetscInt tensors = DIPOLE_COUNT * d->c->bodies->layout->M, rows = 2 * d->c->bodies->layout->M;
   PetscReal *D = NULL;
   PetscReal *B = TestReals(n * n);
-  TestCall(ContrastMatrix(d->c, PETSC_TRUE, d->fluid->a0, 0, l->M, B));
+  TestCall(ContrastMatrix(d->c, PETSC_TRUE, 0, l->M, B));
+  TestCall(ContrastTread(d->c->membrane, 0, l->bodies, d->c->treading, d->fluid->a0, 2 * l->M, B));
   for (PetscInt i = 0; i < n * n; i++) DirectAdd(d, V + i / n, V + i % n, B[i]);
   AddToObstacles(d);
   PetscReal *unit = TestReals(tensors);
