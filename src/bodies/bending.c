@@ -88,7 +88,7 @@ static PetscErrorCode BendingDense(void *context, PetscInt v, PetscReal alpha, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode BendingEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode BendingEnergy(void *context, Instant at, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
   const Membrane m = (Membrane)context;
   PetscFunctionBeginUser;
   for (PetscInt v = m->layout->own; v < m->layout->end; v++)

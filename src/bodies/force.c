@@ -73,7 +73,7 @@ PetscErrorCode ForcesLaw(Forces f, ForceReach first, ForceReach last, Instant at
   for (PetscInt k = 0; k < f->n; k++) {
     const Force *force = &f->force[k];
     if (force->reach < first || force->reach > last) continue;
-    if (force->law) PetscCall(force->law(force->context, at, X, F));
+    if (force->law) PetscCall(force->law(force->context, at, X, F, NULL));
     if (!force->law && force->rate) PetscCall(force->rate(force->context, -1, X, F));
     if (!force->law && force->known) PetscCall(force->known(force->context, -1, X, F));
   }

@@ -21,6 +21,10 @@ typedef enum {
   FORCE_OUTSIDE  /* nowhere in the fluid */
 } ForceReach;
 
+/* At the markers X at an instant, wherever the force is placed: F += the force, E[vesicles] += the energies of the own
+   vesicles (length^4/time^2); the other one is NULL. */
+typedef PetscErrorCode ForceAt(void *, Instant at, const PetscScalar X[], PetscScalar F[], PetscReal E[]);
+
 typedef struct {
   const char *name; /* of this force alone; its energy is in the column energy_NAME of series.csv */
   ForceReach reach;
@@ -33,10 +37,8 @@ typedef struct {
   PetscErrorCode (*known)(void *, PetscReal alpha, const PetscScalar X[], PetscScalar F[]); /* F += alpha k, with X* */
   /* K[2n][2n] += alpha times the part of K of one vesicle, for dense blocks of the preconditioner */
   PetscErrorCode (*dense)(void *, PetscInt vesicle, PetscReal alpha, PetscReal K[]);
-  /* F += the force at the markers X at an instant, wherever it is placed; NULL: the force is -(K X + k) with X* = X */
-  PetscErrorCode (*law)(void *, Instant at, const PetscScalar X[], PetscScalar F[]);
-  /* E[vesicles] += the energies of the own vesicles (length^4/time^2) */
-  PetscErrorCode (*energy)(void *, Instant at, const PetscScalar X[], PetscReal E[]);
+  ForceAt *law;    /* for F; NULL: the force is -(K X + k) with X* = X */
+  ForceAt *energy; /* for E */
   /* sum += SUM of the force's x component times the period by which a seam of the box separates the force from its
      counterforce, at markers x of all bodies, where it is placed at X*[2(M + W)]; on every rank */
   PetscErrorCode (*seams)(void *, const PetscReal Xstar[], const PetscScalar x[], PetscReal *sum);

@@ -35,7 +35,7 @@ static PetscErrorCode GravityKnown(void *context, PetscReal alpha, const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GravityEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode GravityEnergy(void *context, Instant at, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
   const Gravity *gravity = (const Gravity *)context;
   const Membrane m = gravity->membrane;
   PetscFunctionBeginUser;

@@ -126,8 +126,8 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F -= grad E_B, E[vesicles] += E_B of the own vesicles at the markers X[2n]; NULL: not wanted. */
-static PetscErrorCode MomentOfMarkers(const Moment *o, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
+static PetscErrorCode MomentAt(void *context, Instant t, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
+  const Moment *o = (const Moment *)context;
   const Membrane m = o->membrane;
   const Layout l = m->layout;
   PetscFunctionBeginUser;
@@ -140,14 +140,6 @@ static PetscErrorCode MomentOfMarkers(const Moment *o, const PetscScalar X[], Pe
     if (F) MomentAdd(o, v, o->other, 1, 0, -1, F + at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MomentLaw(void *context, Instant t, const PetscScalar X[], PetscScalar F[]) {
-  return MomentOfMarkers((const Moment *)context, X, F, NULL);
-}
-
-static PetscErrorCode MomentEnergy(void *context, Instant t, const PetscScalar X[], PetscReal E[]) {
-  return MomentOfMarkers((const Moment *)context, X, NULL, E);
 }
 
 static PetscErrorCode MomentDestroy(void *context) {
@@ -181,8 +173,8 @@ PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *
                    .rate = MomentRate,
                    .known = MomentKnown,
                    .dense = MomentDense,
-                   .law = MomentLaw,
-                   .energy = MomentEnergy,
+                   .law = MomentAt,
+                   .energy = MomentAt,
                    .destroy = MomentDestroy};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -70,19 +70,11 @@ static PetscErrorCode PotentialKnown(void *context, PetscReal alpha, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PotentialLaw(void *context, Instant t, const PetscScalar X[], PetscScalar F[]) {
+static PetscErrorCode PotentialAt(void *context, Instant t, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
   const Potential *o = (const Potential *)context;
   PetscFunctionBeginUser;
   PetscCall(LayoutGather(o->membrane->layout, 2, X, o->all));
-  (void)PotentialAdd(o, 1, o->all, F, NULL);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PotentialEnergy(void *context, Instant t, const PetscScalar X[], PetscReal E[]) {
-  const Potential *o = (const Potential *)context;
-  PetscFunctionBeginUser;
-  PetscCall(LayoutGather(o->membrane->layout, 2, X, o->all));
-  (void)PotentialAdd(o, 1, o->all, NULL, E);
+  (void)PotentialAdd(o, 1, o->all, F, E);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,8 +114,8 @@ PetscErrorCode ForceCreate_Potential(Bodies bodies, Grid grid, Scene scene, Forc
                    .context = o,
                    .place = PotentialPlace,
                    .known = PotentialKnown,
-                   .law = PotentialLaw,
-                   .energy = PotentialEnergy,
+                   .law = PotentialAt,
+                   .energy = PotentialAt,
                    .seams = PotentialSeams,
                    .destroy = PotentialDestroy};
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -145,10 +145,9 @@ static PetscErrorCode RepulsionSeams(void *context, const PetscReal X[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the law gives at an instant at markers x[2n] (own part) whatever the springs: y += the force on the own markers,
-   y NULL: not wanted; E[vesicles] += the energy of the films of each own vesicle, half of that of a film between two
-   vesicles, E NULL: not wanted. Collective. */
-static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[], PetscScalar y[], PetscReal E[]) {
+/* The energy of the films of each own vesicle has half of that of a film between two vesicles. Collective. */
+static PetscErrorCode RepulsionAt(void *context, Instant at, const PetscScalar x[], PetscScalar y[], PetscReal E[]) {
+  const Repulsion r = (Repulsion)context;
   const Layout l = r->bodies->membrane->layout;
   Spring *spring;
   PetscInt count;
@@ -162,18 +161,6 @@ static PetscErrorCode RepulsionAt(Repulsion r, Instant at, const PetscScalar x[]
     if (y) SpringPull(s, l, s->push - s->stiffness * SpringStretch(s, r->all), y);
   }
   PetscCall(PetscFree(spring));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RepulsionLaw(void *context, Instant at, const PetscScalar X[], PetscScalar F[]) {
-  PetscFunctionBeginUser;
-  PetscCall(RepulsionAt((Repulsion)context, at, X, F, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RepulsionEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
-  PetscFunctionBeginUser;
-  PetscCall(RepulsionAt((Repulsion)context, at, X, NULL, E));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,8 +193,8 @@ PetscErrorCode ForceCreate_Contact(Bodies bodies, Grid grid, Scene scene, Force 
                    .place = RepulsionPlace,
                    .rate = RepulsionRate,
                    .known = RepulsionKnown,
-                   .law = RepulsionLaw,
-                   .energy = RepulsionEnergy,
+                   .law = RepulsionAt,
+                   .energy = RepulsionAt,
                    .seams = RepulsionSeams,
                    .destroy = RepulsionDestroy};
   PetscFunctionReturn(PETSC_SUCCESS);

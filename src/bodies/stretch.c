@@ -10,7 +10,8 @@ Stretch StretchOf(LawType law, PetscReal q) {
 }
 
 /* Forces of stretched edges are those of the law's unknowns (law.h); what is here is their energy. */
-static PetscErrorCode StretchingEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode StretchingEnergy(void *context, Instant at, const PetscScalar X[], PetscScalar F[],
+                                       PetscReal E[]) {
   const Membrane m = (Membrane)context;
   PetscScalar *tau = m->work.measures;
   PetscFunctionBeginUser;

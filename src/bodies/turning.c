@@ -57,7 +57,7 @@ static PetscErrorCode TurningKnown(void *context, PetscReal alpha, const PetscSc
 }
 
 /* The tension is a step's; without a step it is the solved one, which is none of the list. */
-static PetscErrorCode TurningLaw(void *context, Instant at, const PetscScalar X[], PetscScalar F[]) {
+static PetscErrorCode TurningLaw(void *context, Instant at, const PetscScalar X[], PetscScalar F[], PetscReal E[]) {
   return PETSC_SUCCESS;
 }
 

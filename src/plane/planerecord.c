@@ -190,7 +190,7 @@ static void PlaneMeasureVesicle(Membrane m, PetscInt v, const PetscScalar X[], c
 static PetscErrorCode ForceEnergy(Plane p, const Force *force, const PetscScalar X[]) {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(p->work, p->membrane->layout->bodies));
-  PetscCall(force->energy(force->context, StateInstant(&p->scheme->state), X, p->work));
+  PetscCall(force->energy(force->context, StateInstant(&p->scheme->state), X, NULL, p->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

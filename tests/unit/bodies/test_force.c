@@ -28,7 +28,8 @@ static PetscErrorCode PointSpringDense(void *context, PetscInt v, PetscReal alph
   return PETSC_SUCCESS;
 }
 
-static PetscErrorCode PointSpringEnergy(void *context, Instant at, const PetscScalar X[], PetscReal E[]) {
+static PetscErrorCode PointSpringEnergy(void *context, Instant at, const PetscScalar X[], PetscScalar F[],
+                                        PetscReal E[]) {
   const PointSpring *s = (const PointSpring *)context;
   for (PetscInt k = 0; k < 2 * s->layout->n; k++) E[0] += 0.5 * s->k * PetscSqr(X[k] - s->P[k % 2]); /* one vesicle */
   return PETSC_SUCCESS;

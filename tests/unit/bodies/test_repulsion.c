@@ -35,7 +35,7 @@ static void Fold(PetscInt n, PetscReal X[]) {
 /* The energy of both vesicles. */
 static PetscReal EnergyOf(const Force *force, const PetscReal X[]) {
   PetscReal E[2] = {0, 0};
-  TestCall(force->energy(force->context, (Instant){0}, X, E));
+  TestCall(force->energy(force->context, (Instant){0}, X, NULL, E));
   return E[0] + E[1];
 }
 
@@ -44,7 +44,7 @@ static void CheckSlope(const Case *c, const Force *r, Layout l, PetscReal X[]) {
   const PetscReal step = 1e-6;
   PetscReal around[2], off = 0, sum[2] = {0, 0}, torque = 0;
   PetscReal *F = TestReals(2 * l->M);
-  TestCall(r->law(r->context, (Instant){0}, X, F));
+  TestCall(r->law(r->context, (Instant){0}, X, F, NULL));
   for (PetscInt k = 0; k < 2 * l->M; k++) {
     const PetscReal x = X[k];
     for (int side = 0; side < 2; side++) {
@@ -69,7 +69,7 @@ static void CheckSprings(const Force *r, Layout l, const PetscReal X[]) {
   const PetscReal *x = TestRandoms(2 * l->M, &seed), *y = TestRandoms(2 * l->M, &seed);
   PetscReal *F = TestReals(2 * l->M), *Kx = TestReals(2 * l->M), *Ky = TestReals(2 * l->M);
   TestCall(r->place(r->context, (Instant){0}, X));
-  TestCall(r->law(r->context, (Instant){0}, X, F));
+  TestCall(r->law(r->context, (Instant){0}, X, F, NULL));
   TestCall(r->known(r->context, 1, X, F));
   TestCall(r->rate(r->context, 1, X, F));
   const PetscReal off = TestFar(2 * l->M, F, NULL);
@@ -90,7 +90,7 @@ static void CheckRange(const Case *c, const TestMembrane *m, Bodies bodies, Grid
   TestCall(ForceCreate_Contact(bodies, grid, &near, &r));
   PetscReal *F = TestReals(2 * m->M);
   TestCall(r.place(r.context, (Instant){0}, X));
-  TestCall(r.law(r.context, (Instant){0}, X, F));
+  TestCall(r.law(r.context, (Instant){0}, X, F, NULL));
   const PetscReal energy = EnergyOf(&r, X), largest = TestFar(2 * m->M, F, NULL);
   CHECK(((Repulsion)r.context)->count == 0 && energy == 0 && largest == 0,
         "out of range there are %d springs and no force", (int)((Repulsion)r.context)->count);
