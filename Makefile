@@ -45,7 +45,7 @@ MODULES := PETSc hdf5-openmpi fftw3 muparser
 PKG := $(if $(PETSC_DIR),PKG_CONFIG_PATH=$(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig:$(PKG_CONFIG_PATH)) pkg-config
 COMMA := ,
 OPTIMISE := $(if $(SANITIZE),-O1 -g -fsanitize=address$(COMMA)undefined -fno-omit-frame-pointer,$(if $(COVERAGE),-O1 -g --coverage -fprofile-update=atomic,-O3 -g$(if $(ARCH), $(ARCH_OPTION)=$(ARCH))))
-CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-psabi -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
+CFLAGS = -std=gnu11 -Wall -Wextra -Werror -Wno-psabi -fcx-limited-range -Wno-unused-parameter -Wno-missing-field-initializers $(OPTIMISE) -fPIC -Iinclude -Isrc \
   $(shell $(PKG) --cflags $(MODULES))
 VERSION := $(shell sed -n 's/^\#define PETVES_VERSION "\(.*\)"/\1/p' src/base/version.h)
 # An archive of make dist has the commit in a file.

@@ -15,7 +15,7 @@ typedef struct {
   PetscReal *kappa0;  /* [TIMES M] curvature that bending prefers, at the points */
   MomentPoint *point; /* [TIMES M] of all vesicles, where the force is placed: dense blocks may be of any of them */
   MomentPoint *other; /* [TIMES M] work: of other markers */
-  PetscReal *a, *b;   /* [2 TIMES M] work: X_s and X_ss at the points of one vesicle */
+  PetscReal *slope;   /* [4 TIMES M] work: a = X_s at the points of one vesicle, and behind it b = X_ss */
   PetscScalar *at;    /* [2n] grad E_B - N X* at the own markers */
 } Moment;
 
@@ -33,37 +33,37 @@ static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a
   return o;
 }
 
-/* a, b = X_s, X_ss of one vesicle's X[2n] at the points: at the markers, and then halfway to the next ones. */
+/* Slopes of one vesicle's X[2n] at the points: at the markers, and then halfway to the next ones. */
 static void MomentSlopes(const Moment *o, PetscInt v, const PetscScalar X[]) {
   const PetscReal rate = LayoutCount(o->membrane->layout, v) / o->membrane->arc[v];
-  SpectralSlopes(o->membrane->spectral[v], (PetscReal[]){rate, rate * rate}, X, (PetscReal *[]){o->a, o->b});
+  SpectralSlopes(o->membrane->spectral[v], (PetscReal[]){rate, rate * rate}, X, o->slope);
 }
 
-/* G += alpha times the transpose of MomentSlopes of a, b for the c_b ds of a point. */
+/* G += alpha times the transpose of MomentSlopes of o->slope for the c_b ds of a point. */
 static void MomentSlopesTranspose(const Moment *o, PetscInt v, PetscReal alpha, PetscScalar G[]) {
   const Membrane m = o->membrane;
   const PetscReal rate = LayoutCount(m->layout, v) / m->arc[v],
                   size = alpha * m->bending * m->part[v] * m->ds[v] / TIMES;
-  SpectralSlopesTranspose(m->spectral[v], (PetscReal[]){size * rate, size * rate * rate}, (PetscReal *[]){o->a, o->b},
-                          G);
+  SpectralSlopesTranspose(m->spectral[v], (PetscReal[]){size * rate, size * rate * rate}, o->slope, G);
 }
 
 /* The points of one vesicle's markers X[2n], among those of all. */
 static void MomentPoints(const Moment *o, PetscInt v, const PetscScalar X[], MomentPoint point[]) {
-  const PetscInt *start = o->membrane->layout->start, first = TIMES * start[v];
+  const PetscInt first = TIMES * o->membrane->layout->start[v], points = TIMES * LayoutCount(o->membrane->layout, v);
   MomentSlopes(o, v, X);
-  for (PetscInt q = first; q < TIMES * start[v + 1]; q++)
-    point[q] = MomentOf(o->membrane->moment, o->kappa0[q], o->a + 2 * (q - first), o->b + 2 * (q - first));
+  for (PetscInt q = 0; q < points; q++)
+    point[first + q] = MomentOf(o->membrane->moment, o->kappa0[first + q], o->slope + 2 * q,
+                                o->slope + 2 * (points + q));
 }
 
-/* G += alpha (gradient grad E_B + rate N V), at the markers of one vesicle's points; a, b: slopes of the motion V,
+/* G += alpha (gradient grad E_B + rate N V), at the markers of one vesicle's points; slope: that of the motion V,
    where rate is not 0. */
 static void MomentAdd(const Moment *o, PetscInt v, const MomentPoint point[], PetscReal gradient, PetscReal rate,
                       PetscReal alpha, PetscScalar G[]) {
-  const PetscInt *start = o->membrane->layout->start, first = TIMES * start[v];
-  for (PetscInt q = first; q < TIMES * start[v + 1]; q++) {
-    const MomentPoint *at = &point[q];
-    PetscReal *a = o->a + 2 * (q - first), *b = o->b + 2 * (q - first), change = gradient * at->change;
+  const PetscInt first = TIMES * o->membrane->layout->start[v], points = TIMES * LayoutCount(o->membrane->layout, v);
+  for (PetscInt q = 0; q < points; q++) {
+    const MomentPoint *at = &point[first + q];
+    PetscReal *a = o->slope + 2 * q, *b = a + 2 * points, change = gradient * at->change;
     if (rate != 0) change += rate * (at->by_a[0] * a[0] + at->by_a[1] * a[1] + at->by_b[0] * b[0] + at->by_b[1] * b[1]);
     for (int c = 0; c < 2; c++) {
       a[c] = at->weight * (change * at->by_a[c] + gradient * 0.5 * PetscSqr(at->change) * at->weight_by_a[c]);
@@ -117,7 +117,8 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
     const MomentPoint *at = &o->point[TIMES * m->layout->start[v] + k];
     for (PetscInt j = 0; j < 2 * n; j++) {
       const PetscInt q = 2 * (k % n < j / 2 ? k - j / 2 + n : k - j / 2);
-      A[j * points + k] = PetscSqrtReal(at->weight) * (at->by_a[j % 2] * o->a[q] + at->by_b[j % 2] * o->b[q]);
+      A[j * points + k] = PetscSqrtReal(at->weight) *
+                          (at->by_a[j % 2] * o->slope[q] + at->by_b[j % 2] * o->slope[2 * points + q]);
     }
   }
   const DenseView view = {A, points, 2 * n, points};
@@ -145,7 +146,7 @@ static PetscErrorCode MomentAt(void *context, Instant t, const PetscScalar X[], 
 static PetscErrorCode MomentDestroy(void *context) {
   Moment *o = (Moment *)context;
   PetscFunctionBeginUser;
-  PetscCall(PetscFree6(o->kappa0, o->point, o->other, o->a, o->b, o->at));
+  PetscCall(PetscFree5(o->kappa0, o->point, o->other, o->slope, o->at));
   PetscCall(PetscFree(context));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,7 +159,7 @@ PetscErrorCode ForceCreate_Moment(Bodies bodies, Grid grid, Scene scene, Force *
   PetscCall(PetscNew(&o));
   o->membrane = m;
   const PetscInt points = TIMES * m->layout->M;
-  PetscCall(PetscCalloc6(points, &o->kappa0, points, &o->point, points, &o->other, 2 * points, &o->a, 2 * points, &o->b,
+  PetscCall(PetscCalloc5(points, &o->kappa0, points, &o->point, points, &o->other, 4 * points, &o->slope,
                          2 * m->layout->n, &o->at));
   for (PetscInt v = 0; v < m->layout->bodies && m->memory; v++) {
     const PetscInt first = m->layout->start[v], n = LayoutCount(m->layout, v);

@@ -1,13 +1,16 @@
 #include "numerics/spectral.h"
 #include "numerics/circulant.h"
+#include <complex.h>
 #include <fftw3.h>
+
+#define SLOPES 4 /* parts of the slopes: of the powers 1 and 2, at the points and halfway */
 
 struct _p_Spectral {
   PetscInt n;
   fftw_complex *line, *hat; /* x + i y of the points, and its modes */
   fftw_plan forward, backward;
-  PetscReal *modes;  /* [2n] work: modes */
-  PetscReal *factor; /* [2][2][2n] of the modes, for the slopes of both powers at the points and halfway, over n */
+  fftw_complex *modes;      /* [n] work: modes */
+  fftw_complex *factor;     /* [SLOPES][n] of the modes, over n */
   PetscReal *derivative[3]; /* weights [n] of powers 1, 2, 4 */
   PetscReal *turn;          /* work: weights [n] of a shift */
   PetscReal *round;         /* cos and sin of pi j/n, j = 0 .. n/2, interlaced */
@@ -40,16 +43,12 @@ static void SpectralSetWeights(Spectral s) {
 /* Set the factors of the slopes, (2 pi i m/n)^power e^{pi i m/n} halfway; there the Nyquist mode of an even n is 0. */
 static void SpectralSetFactors(Spectral s) {
   const PetscInt n = s->n;
-  PetscReal *factor = s->factor;
-  for (int power = 1; power <= 2; power++)
-    for (int half = 0; half < 2; half++, factor += 2 * n)
-      for (PetscInt q = 0; q < n; q++) {
-        const PetscInt m = 2 * q <= n ? q : q - n;
-        const PetscReal wave = 2 * PETSC_PI * m / n, angle = half * PETSC_PI * m / n;
-        const PetscReal size = 2 * q == n && (half || power == 1) ? 0 : (power == 1 ? wave : -wave * wave) / n;
-        factor[2 * q] = size * (power == 1 ? -PetscSinReal(angle) : PetscCosReal(angle));
-        factor[2 * q + 1] = size * (power == 1 ? PetscCosReal(angle) : PetscSinReal(angle));
-      }
+  for (int part = 0; part < SLOPES; part++)
+    for (PetscInt q = 0; q < n; q++) {
+      const PetscReal wave = 2 * PETSC_PI * (2 * q <= n ? q : q - n) / n;
+      const fftw_complex slope = part < 2 ? I * wave : -wave * wave;
+      s->factor[part * n + q] = 2 * q == n && part != 2 ? 0 : slope * cexp(I * (part % 2 * wave / 2)) / n;
+    }
 }
 
 PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
@@ -62,7 +61,7 @@ PetscErrorCode SpectralCreate(PetscInt n, Spectral *out) {
   s->line = fftw_alloc_complex((size_t)n);
   s->forward = fftw_plan_dft_1d((int)n, s->line, s->hat, FFTW_FORWARD, FFTW_ESTIMATE);
   s->backward = fftw_plan_dft_1d((int)n, s->hat, s->line, FFTW_BACKWARD, FFTW_ESTIMATE);
-  PetscCall(PetscCalloc5(4 * n, &s->twice, 2 * n, &s->sum, n + 2, &s->round, 2 * n, &s->modes, 8 * n, &s->factor));
+  PetscCall(PetscCalloc5(4 * n, &s->twice, 2 * n, &s->sum, n + 2, &s->round, n, &s->modes, SLOPES * n, &s->factor));
   for (PetscInt j = 0; j <= n / 2; j++) {
     s->round[2 * j] = PetscCosReal(PETSC_PI * j / n);
     s->round[2 * j + 1] = PetscSinReal(PETSC_PI * j / n);
@@ -102,39 +101,28 @@ void SpectralDerivative(Spectral s, int power, PetscReal scale, const PetscScala
   for (PetscInt k = 0; k < 2 * s->n; k++) Y[k] += scale * s->sum[k];
 }
 
-/* z[n] += scale times the complex numbers x[n] times those of a factor, or (conjugate) times their conjugates. */
-static void SpectralMultiplyAdd(PetscInt n, PetscReal scale, PetscBool conjugate, const PetscReal factor[],
-                                const PetscReal x[], PetscReal z[]) {
-  for (PetscInt q = 0; q < 2 * n; q += 2) {
-    const PetscReal re = scale * factor[q], im = (conjugate ? -scale : scale) * factor[q + 1];
-    z[q] += re * x[q] - im * x[q + 1];
-    z[q + 1] += re * x[q + 1] + im * x[q];
-  }
-}
-
-void SpectralSlopes(Spectral s, const PetscReal scale[2], const PetscScalar X[], PetscReal *const slope[2]) {
+void SpectralSlopes(Spectral s, const PetscReal scale[2], const PetscScalar X[], PetscReal slope[]) {
   const PetscInt n = s->n;
-  const size_t bytes = 2 * (size_t)n * sizeof(double);
+  const size_t bytes = (size_t)n * sizeof(*s->line);
   memcpy(s->line, X, bytes);
   fftw_execute(s->forward);
   memcpy(s->modes, s->hat, bytes);
-  for (int part = 0; part < 4; part++) {
-    memset(s->hat, 0, bytes);
-    SpectralMultiplyAdd(n, scale[part / 2], PETSC_FALSE, s->factor + 2 * n * part, s->modes, (PetscReal *)s->hat);
+  for (int part = 0; part < SLOPES; part++) {
+    for (PetscInt q = 0; q < n; q++) s->hat[q] = scale[part / 2] * s->factor[part * n + q] * s->modes[q];
     fftw_execute(s->backward);
-    memcpy(slope[part / 2] + part % 2 * 2 * n, s->line, bytes);
+    memcpy(slope + part * 2 * n, s->line, bytes);
   }
 }
 
-void SpectralSlopesTranspose(Spectral s, const PetscReal scale[2], PetscReal *const slope[2], PetscScalar Y[]) {
+void SpectralSlopesTranspose(Spectral s, const PetscReal scale[2], const PetscReal slope[], PetscScalar Y[]) {
   const PetscInt n = s->n;
-  const size_t bytes = 2 * (size_t)n * sizeof(double);
+  const size_t bytes = (size_t)n * sizeof(*s->line);
   const PetscReal *line = (PetscReal *)s->line;
   memset(s->modes, 0, bytes);
-  for (int part = 0; part < 4; part++) {
-    memcpy(s->line, slope[part / 2] + part % 2 * 2 * n, bytes);
+  for (int part = 0; part < SLOPES; part++) {
+    memcpy(s->line, slope + part * 2 * n, bytes);
     fftw_execute(s->forward);
-    SpectralMultiplyAdd(n, scale[part / 2], PETSC_TRUE, s->factor + 2 * n * part, (PetscReal *)s->hat, s->modes);
+    for (PetscInt q = 0; q < n; q++) s->modes[q] += scale[part / 2] * conj(s->factor[part * n + q]) * s->hat[q];
   }
   memcpy(s->hat, s->modes, bytes);
   fftw_execute(s->backward);

@@ -17,13 +17,12 @@ PETSC_EXTERN PetscErrorCode SpectralDestroy(Spectral *spectral);
 PETSC_EXTERN void SpectralDerivative(Spectral spectral, int power, PetscReal scale, const PetscScalar X[],
                                      PetscScalar Y[]);
 
-/* SpectralSlopes - slope[power - 1][2][2n], scale[power - 1] d^power X/dk^power of X[2n] for the powers 1 and 2, at the
-   points and then halfway to the next ones, as SpectralDerivative and SpectralShift have them.
+/* SpectralSlopes - slope[2][2][2n] (power - 1, place, marker) is scale[power - 1] d^power X/dk^power of X[2n] for the
+   powers 1 and 2, at the points and then halfway to the next ones, as SpectralDerivative and SpectralShift have them.
    SpectralSlopesTranspose - Y[2n] += what the transpose of this map makes of slope. Both by fast
    transforms. Not collective. */
-PETSC_EXTERN void SpectralSlopes(Spectral spectral, const PetscReal scale[2], const PetscScalar X[],
-                                 PetscReal *const slope[2]);
-PETSC_EXTERN void SpectralSlopesTranspose(Spectral spectral, const PetscReal scale[2], PetscReal *const slope[2],
+PETSC_EXTERN void SpectralSlopes(Spectral spectral, const PetscReal scale[2], const PetscScalar X[], PetscReal slope[]);
+PETSC_EXTERN void SpectralSlopesTranspose(Spectral spectral, const PetscReal scale[2], const PetscReal slope[],
                                           PetscScalar Y[]);
 
 /* SpectralTail - the part of a curve's bending in modes above part K, K = (n - 1)/2 the highest mode:
