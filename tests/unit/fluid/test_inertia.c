@@ -275,7 +275,7 @@ static void CheckSplit(const char name[], const char bc[], Exact *f) {
   TestAbout("split, %s", name);
   (void)Run(Oblong(bc, 16), f, PETSC_TRUE, 16, 1280, &fine);
   for (int level = 0; level < 3; level++) {
-    const int n = 16 << level;
+    const int n = 12 << level;
     ScopedWorld r, s;
     const PetscReal div = Run(Oblong(bc, n), f, PETSC_TRUE, n, n * n / 8, &r);
     CheckBelow(div, 1e-11, "%d cells: max |div u|", n);
