@@ -3,11 +3,9 @@
 
 #define TIMES 2 /* points of the energy for each marker */
 
-/* The change of bending at a point of the membrane, theta - kappa0 lambda^p, and its derivatives. */
+/* r at a point of the membrane, and its derivatives by a = X_s and b = X_ss. */
 typedef struct {
-  PetscReal change, weight;   /* the energy of a length at rest is c_b/2 weight change^2, weight = lambda^-p */
-  PetscReal by_a[2], by_b[2]; /* derivatives of the change by a = X_s and b = X_ss */
-  PetscReal weight_by_a[2];   /* derivative of the weight by a, over the weight */
+  PetscReal r, by_a[2], by_b[2];
 } MomentPoint;
 
 typedef struct {
@@ -23,12 +21,12 @@ static MomentPoint MomentOf(MomentType type, PetscReal kappa0, const PetscReal a
   const PetscReal q = PetscSqr(a[0]) + PetscSqr(a[1]), lambda = PetscSqrtReal(q);
   const PetscReal theta = (a[0] * b[1] - a[1] * b[0]) / q;
   const int p = type == MOMENT_HELFRICH;
-  MomentPoint o = {.change = theta - (p ? kappa0 * lambda : kappa0), .weight = p ? 1 / lambda : 1};
+  const PetscReal change = theta - (p ? kappa0 * lambda : kappa0), root = p ? 1 / PetscSqrtReal(lambda) : 1;
+  MomentPoint o = {.r = root * change};
   for (int c = 0; c < 2; c++) {
     const PetscReal sign = c ? -1 : 1;
-    o.by_a[c] = (sign * b[1 - c] - (2 * theta + p * kappa0 * lambda) * a[c]) / q;
-    o.by_b[c] = -sign * a[1 - c] / q;
-    o.weight_by_a[c] = -p * a[c] / q;
+    o.by_a[c] = root * (sign * b[1 - c] - (2 * theta + p * (kappa0 * lambda + 0.5 * change)) * a[c]) / q;
+    o.by_b[c] = -root * sign * a[1 - c] / q;
   }
   return o;
 }
@@ -63,11 +61,11 @@ static void MomentAdd(const Moment *o, PetscInt v, const MomentPoint point[], Pe
   const PetscInt first = TIMES * o->membrane->layout->start[v], points = TIMES * LayoutCount(o->membrane->layout, v);
   for (PetscInt q = 0; q < points; q++) {
     const MomentPoint *at = &point[first + q];
-    PetscReal *a = o->slope + 2 * q, *b = a + 2 * points, change = gradient * at->change;
-    if (rate != 0) change += rate * (at->by_a[0] * a[0] + at->by_a[1] * a[1] + at->by_b[0] * b[0] + at->by_b[1] * b[1]);
+    PetscReal *a = o->slope + 2 * q, *b = a + 2 * points, r = gradient * at->r;
+    if (rate != 0) r += rate * (at->by_a[0] * a[0] + at->by_a[1] * a[1] + at->by_b[0] * b[0] + at->by_b[1] * b[1]);
     for (int c = 0; c < 2; c++) {
-      a[c] = at->weight * (change * at->by_a[c] + gradient * 0.5 * PetscSqr(at->change) * at->weight_by_a[c]);
-      b[c] = at->weight * change * at->by_b[c];
+      a[c] = r * at->by_a[c];
+      b[c] = r * at->by_b[c];
     }
   }
   MomentSlopesTranspose(o, v, alpha, G);
@@ -117,8 +115,7 @@ static PetscErrorCode MomentDense(void *context, PetscInt v, PetscReal alpha, Pe
     const MomentPoint *at = &o->point[TIMES * m->layout->start[v] + k];
     for (PetscInt j = 0; j < 2 * n; j++) {
       const PetscInt q = 2 * (k % n < j / 2 ? k - j / 2 + n : k - j / 2);
-      A[j * points + k] = PetscSqrtReal(at->weight) *
-                          (at->by_a[j % 2] * o->slope[q] + at->by_b[j % 2] * o->slope[2 * points + q]);
+      A[j * points + k] = at->by_a[j % 2] * o->slope[q] + at->by_b[j % 2] * o->slope[2 * points + q];
     }
   }
   const DenseView view = {A, points, 2 * n, points};
@@ -137,7 +134,7 @@ static PetscErrorCode MomentAt(void *context, Instant t, const PetscScalar X[], 
     const PetscReal size = m->bending * m->part[v] * m->ds[v] / TIMES;
     MomentPoints(o, v, X + at, o->other);
     for (PetscInt q = TIMES * l->start[v]; q < TIMES * l->start[v + 1] && E; q++)
-      E[v] += 0.5 * size * o->other[q].weight * PetscSqr(o->other[q].change);
+      E[v] += 0.5 * size * PetscSqr(o->other[q].r);
     if (F) MomentAdd(o, v, o->other, 1, 0, -1, F + at);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

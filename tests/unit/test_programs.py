@@ -18,7 +18,10 @@ RANKS |= {f"test_{name}": (1,) for name in ALONE.split()}
 FEW = dict(test_axial=4, test_near_cells=16)
 
 
-@pytest.mark.parametrize("name,ranks", sorted(((name, ranks) for name in NAMES for ranks in RANKS.get(name, (1, 3))), key=lambda run: run[1] == 1))
+@pytest.mark.parametrize(
+    "name,ranks",
+    sorted(((name, ranks) for name in NAMES for ranks in RANKS.get(name, (1, 3))), key=lambda run: run[1] == 1),
+)
 def test_facts_hold(name, ranks, tmp_path):
     alone = {} if ranks > 1 else {"OMPI_MCA_mpi_yield_when_idle": "0"}  # what MUMPS sends to itself is there at once
     done = mpirun([str(PROGRAMS / name)], ranks, PETVES_SCRATCH=str(tmp_path) + os.sep, **alone)
