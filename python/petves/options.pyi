@@ -97,7 +97,7 @@ class Options(TypedDict, total=False):
     membrane_stretching: Value  # E_s of -membrane_law, one for all, or one a vesicle or kind; 0: does not stretch (length^3/time^2)
     membrane_moment: Literal['quadratic', 'angle', 'helfrich'] | None  # bending energy of membranes that stretch, a length at rest: c_b/2 times |X_ss|^2 by the length at rest s, the angle a length squared, or the curvature squared times the stretch
     membrane_viscosity: Value  # of membranes that stretch: tension over the rate of the stretch, one for all, or one a vesicle or kind (length^3/time)
-    membrane_permeability: Value  # coupled: water passes the membranes at this times its pressure inside less that outside; 0: none (time/length)
+    membrane_permeability: Value  # coupled: water passes the membranes at this times the normal stress inside less that outside, where viscosities are alike its pressure; 0: none (time/length)
     membrane_osmotic: Value  # of permeable membranes: osmotic pressures inside, at the first area, and outside; the higher one draws water (length^2/time^2)
     membrane_memory: Value  # coupled: shape memory, bending prefers this times the curvature that each part of the membrane has at rest (-membrane_rest), one for all, or one a vesicle or kind; 0: no curvature
     membrane_rest: Value  # of membranes that stretch or remember: the shape at rest, the initial one, a circle of its length, or the curve of a file (initial|circle|FILE); its first point is that of the initial curve

@@ -13,7 +13,8 @@ def stresslets(run: Run, frame: int) -> np.ndarray:
     The sum of force a times place b is S_ab = -SUM ds (sigma tau_a tau_b + c_b k_a k_b), tau the tangent and k the second
     derivative along the membrane, length^4/time^2 with density 1. Where the viscosity inside is lam times that outside, nu (1
     - lam) SUM (U_a n_b + n_a U_b) ds comes on top, U the markers' velocity and n the outward normal. Divided by minus the
-    area of the box it is what the vesicle adds to the stress (Batchelor 1970). Forces of contact between vesicles (-contact_repulsion) are not in it.
+    area of the box it is what the vesicle adds to the stress (Batchelor 1970).
+    Neither contact (-contact_repulsion) nor water that passes membranes (-membrane_permeability) is in it.
     """
     kind = run.options().get("membrane_derivative", "spectral")
     found = []

@@ -1,6 +1,6 @@
 /* Water through the membranes of vesicles, at a speed proportional to what drives it (Kedem and Katchalsky): with the
-   permeability P, the normal n outward, the jump of the fluid's pressure as the normal part of the membrane's force,
-   which viscous stresses are small beside, and the osmotic pressures inside, that of a fixed amount of solute, and
+   permeability P, the normal n outward, the jump of the fluid's normal stress, which is the normal part of the
+   membrane's force, and the osmotic pressures inside, that of a fixed amount of solute, and
    outside, markers move relative to the fluid by
 
        -(P/l) n n^T F + P (osmotic_in A0/A - osmotic_out) n,

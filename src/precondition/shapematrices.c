@@ -2,7 +2,6 @@
 #include "problem/contrast.h"
 #include "precondition/denseblock.h"
 #include "layers/layerpairs.h"
-#include "bodies/seepage.h"
 #include "numerics/blas.h"
 
 /* What ContrastMatrix has of a vesicle of this shape, motion[2n][2n]. */
@@ -90,7 +89,6 @@ PetscErrorCode SharedShapeMake(SharedShapes s, SharedShape *q, PetscBool *good) 
   PetscCall(LayerSelf(&stokeslet, &s->coupling->mobility->near->set, m->spectral[q->like], n, q->X, NULL, M));
   for (PetscInt k = 0; k < 4 * n * n; k++) M[k] *= PetscSqr(s->coupling->fluid->grid->h);
   PetscCall(ShapeMotion(s, q, motion));
-  SeepageBlock(block.law, q->X, motion, M);
   PetscCall(ContrastTread(m, q->like, q->like + 1, &q->treading, s->a0, 2 * n, motion));
   LawPlace(block.law, s->a0, q->X);
   PetscCall(DenseBlockFactor(&block, s->a0, M, motion, good));

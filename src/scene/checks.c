@@ -167,7 +167,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
   /* entries of the lists of laws and moduli; lists of unlike lengths are refused elsewhere */
   const PetscInt laws = m->law.n, moduli = m->stretching.n;
   const PetscInt entries = PetscMin(laws, moduli) > 1 ? PetscMin(laws, moduli) : PetscMax(laws, moduli);
-  PetscBool stretches = PETSC_FALSE;
+  PetscBool stretches = PETSC_FALSE, viscous = PETSC_FALSE; /* viscous: of an entry that does not stretch */
   PetscInt without = 0;  /* laws without a modulus */
   PetscReal lawless = 0; /* a modulus without a law */
   for (PetscInt k = 0; k < entries; k++) {
@@ -176,6 +176,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
     if (law) stretches = PETSC_TRUE;
     if (law && modulus == 0) without++;
     if (!law && modulus > 0) lawless = modulus;
+    if (modulus == 0 && m->viscosity.n > 1 && ListEntry(&m->viscosity, 1, k, 0) > 0) viscous = PETSC_TRUE;
   }
   const SceneRule rules[] = {
     {lawless > 0,
@@ -190,7 +191,7 @@ static PetscErrorCode SceneCheckMembranes(Scene s) {
      "-membrane_moment {-membrane_moment}: -vesicle_bending 0 leaves bending out; allowed: quadratic, or -vesicle_bending above 0"},
     {memory > 0 && !bends,
      "-membrane_memory {-membrane_memory}: -vesicle_bending 0 bends back to no shape; allowed: 0, or -vesicle_bending above 0"},
-    {!stretches && ListLargest(&m->viscosity) > 0,
+    {viscous || (!stretches && ListLargest(&m->viscosity) > 0),
      "-membrane_viscosity {-membrane_viscosity}: resists the stretching, which -membrane_law inextensible has none of; allowed: 0, or -membrane_law hooke, green or neo_hookean"},
     {m->osmotic.n != 2, "-membrane_osmotic {-membrane_osmotic}: not two numbers; allowed: inside, outside"},
     {m->permeability == 0 && (m->osmotic.v[0] != 0 || m->osmotic.v[1] != 0),

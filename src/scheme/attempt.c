@@ -190,7 +190,7 @@ static PetscErrorCode MeasureStress(Scheme s, Coupled *d) {
   if (!StressApplies(s)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CouplingMarkers(s->coupling, n->X, n->place, d->all));
   PetscCall(CouplingStepForce(s->coupling, d->all, d->Xstar, n->sigma, d->known, NULL));
-  if (n->place) {
+  if (n->solid) {
     PetscCall(VecGetArray(d->known, &F));
     PetscCall(VecGetArrayRead(n->solid, &solid));
     PetscCall(PetscArraycpy(F + BodiesFirstObstacle(bodies), solid, BodiesObstacleNumbers(bodies)));

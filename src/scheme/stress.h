@@ -1,4 +1,4 @@
-/* The stress that membranes and free bodies add to a sheared channel with walls in y, periodic in x
+/* The stress that membranes and obstacles add to a sheared channel with walls in y, periodic in x
    (docs/suspensions.md, Stress). It is measured twice, at the walls and from the membranes' forces; the sums cross
    ranks. */
 #pragma once

@@ -163,6 +163,12 @@ def test_relaxing_never_gains_energy(tmp_path, moment, modulus, step):
     relaxed(tmp_path, f"{ELLIPSE} {stretched('hooke', float(modulus))} {bends}", step, 0.9)
 
 
+def test_stretch_and_curvature_are_implicit_together(tmp_path):
+    """Bending by Helfrich with many markers, c_b and E_s R0^2 of one size: no gain of energy in steps of .04."""
+    options = f"{ELLIPSE} -vesicle_bending .3 -vesicle_markers 161 -domain_cells 96,96 -membrane_moment helfrich"
+    relaxed(tmp_path, f"{options} {stretched('hooke', 6.0)}", 0.04, 1)
+
+
 @pytest.mark.parametrize("moment", CAPSULES["moments"])
 def test_bending_of_stretched_capsules(tmp_path, moment):
     """Ca = .1: D, angle, frequency and length of two boundary integrals, with kappa0 = 1 and without; quadratic bending is another material."""
@@ -270,6 +276,17 @@ def test_permeable_vesicles(tmp_path):
         last = {name: values[-1] for name, values in run.series.items()}
         assert 4 * math.pi * last["area"] / last["length"] ** 2 == pytest.approx(V, abs=1e-3)
         assert angle(run) == pytest.approx(theta, abs=1e-3)
+
+
+def test_iterations_of_many_markers(tmp_path):
+    """What passes the membrane does not take more iterations above 300 markers, 20 times as viscous inside."""
+    options = (
+        f"{ELLIPSE} -vesicle_markers 303 -vesicle_allow_close_markers -flow_type shear -time_step .02 -time_end .4"
+    )
+    run = run_petves(
+        tmp_path, f"{options} -membrane_permeability 1 -membrane_osmotic .2,.1 -vesicle_viscosity_ratio 20"
+    )
+    assert run.series["coupled_its"][2:].mean() < 5
 
 
 @pytest.mark.parametrize("ratio", [1, 5])
