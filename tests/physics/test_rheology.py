@@ -18,7 +18,7 @@ SEAM = "-vesicle_center 0.1,2,2.3,2.4 -contact_repulsion 20 -contact_repulsion_r
 #: Of two ratios of the viscosities.
 UNLIKE = "-vesicle_viscosity_ratio 5,.3 "
 LEAKS = UNLIKE + "-membrane_permeability .1 -membrane_osmotic 2,1 "
-POST = "-obstacle_shape posts -obstacle_radius 0.3 -obstacle_center 3.4,1 "
+POST = "-coupling_box_part true -obstacle_shape posts -obstacle_radius 0.45 -obstacle_center 3.5,.9 "
 
 
 @pytest.mark.parametrize("options, ranks", [(APART, 2), (APART + UNLIKE, 1), (APART + POST, 3), (SEAM, 1), (SEAM, 3)])
