@@ -27,7 +27,6 @@ PetscErrorCode PreconditionerCreate(Scene scene, Unknowns u, PetscBool flexible,
   PetscCall(PetscMalloc1(2 * c->bodies->layout->n, &p->force));
   if (c->bodies->obstacles) PetscCall(ObstacleBlockCreate(&scene->fluid, c, &p->solid));
   PetscCall(PetscCalloc1(c->membrane->layout->bodies, &p->treading));
-  /* what seeps is so stiff that blocks are those of the present shapes */
   const PetscBool shares = c->membrane->layout->M > DENSE_TOGETHER && c->membrane->permeability == 0;
   if (c->mobility->near && c->fluid->steady && shares) {
     PetscCall(SharedShapesCreate(&scene->fluid, c, &p->shapes));

@@ -5,7 +5,8 @@
    takes the inverse B^-1 of the shape that it is nearest to, in the frame of the rigid fit (rigidfit.h). What other
    vesicles and the walls do to it is added by interactions.h, on a coarse grid.
 
-   That is for quasi-steady flow: with inertia the mobility of short steps depends on the place in the cells.
+   That is for quasi-steady flow: with inertia the mobility of short steps depends on the place in the cells. It is not
+   for permeable membranes: what seeps is stiff along the normals, which the shape's are not quite.
 
    Every rank knows all shapes, and they do not depend on the ranks; a rank has the matrices of those shapes that its
    own vesicles take. A step: Follow, then Solve for each application of the preconditioner. */
