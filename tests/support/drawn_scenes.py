@@ -215,7 +215,7 @@ class Draw:
             self.text |= {"membrane_rest": "circle"} if self.chance(0.2) else {}
         if derivative != "fd" and self.chance(0.2):
             self.numbers["membrane_memory"] = np.array([pick([0, 0.5, 1]) for _ in range(count)])
-        if "vesicle_viscosity_ratio" not in self.numbers and self.chance(0.15):
+        if self.chance(0.15):
             self.numbers["membrane_permeability"] = pick([0.01, 0.1]) * R0 / nu
             self.numbers["membrane_osmotic"] = bending / R0**3 * np.array([pick([0, 1, 3]), pick([0, 1])])
         if self.chance(0.2) and count > 1:
