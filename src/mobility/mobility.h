@@ -4,8 +4,8 @@
        U = E u - C F + C_D J,      H u + G p = f - E^T F/h^2 + dipoles of J,      G^T u = source of J,
 
    with F minus the force times ds on the markers, E the interpolation from the grid, C the near field, and
-   J = (1 - ratio) G the jump at membranes that move with G, where the viscosity inside is not that outside; C_D is the
-   near field of the double layer of J. In unbounded fluid u = 0, and C and C_D are the whole of it.
+   J = (1 - ratio) G the jump at membranes where the fluid moves with G and the viscosity inside is not that outside;
+   C_D is the near field of the double layer of J. In unbounded fluid u = 0, and C and C_D are the whole of it.
 
    MobilityPlace is the only act that changes the operator. MobilityApply is linear. The velocity of a step is built by
    MobilityBegin, for what is known of the step, and MobilityAdd, for each F and G that a solver finds; what is known

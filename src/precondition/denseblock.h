@@ -2,9 +2,14 @@
 
    M is the vesicles' mobility times h^2, with what seeps (bodies/seepage.h), v the speed of their labels, B what stands
    with their motion (contrast.h), D the rows of the membranes' law (LawBlock) and K the part of the forces' rate that a
-   force has for one vesicle alone (ForcesDense). With N = B (I + (v/a0) d/dt) + M K/(h^2 a0),      C = D N^-1 M D^T,
+   force has for one vesicle alone (ForcesDense). With
+
+       N = B (I + (v/a0) d/dt) + M K/(h^2 a0),      C = D N^-1 M D^T,
+
    velocity and the law's unknowns sigma follow from right-hand sides U and r_s by the Schur complement C:
+
        U1 = N^-1 U,      sigma = C^-1 (D U1 - r_s),      U3 = U1 - N^-1 M D^T sigma.
+
    N and C are factored once for many solves. All is local to one rank. */
 #pragma once
 #include "bodies/force.h"

@@ -2,16 +2,16 @@
 
        (1)  U = known + M (F, G)                                the mobility (mobility/mobility.h)
        (2)  F = Dm^T sigma + (1/a0) K V                         minus h^2 times the force of a membrane
-       (3)  (1 + ratio)/2 G - U = k                             vesicles' markers move with the fluid
-            G = V + (v/a0) dV/dt + (P/l) n n^T F + known        but for the water that passes (bodies/seepage.h)
+       (3)  (1 + ratio)/2 G - U = k                             the fluid at vesicles' markers moves with G
+            G = V + (v/a0) dV/dt + (P/l) n n^T F + known        water passes markers (bodies/seepage.h)
        (4)  Dm V/h^2 = g                                        inextensible edges
        (5)  U - beta N N^T F - m R q + k = 0                    no slip on obstacles, whose F is unknown
        (6)  R^T F + load + contact = a0 M q - INT_inside R^T Du/Dt   obstacles that move freely, with the velocity q
 
    V is the markers' velocity without the background's, seen from labels that turn at the speed v of their vesicle; G is
-   the motion of the fluid there; K is what the forces change by with their markers (bodies/force.h); k is the
-   background's velocity, less that of the obstacle; M and the integral are 0 without inertia of the fluid
-   (bodies/innerfluid.h).
+   the motion of the fluid there, P the membranes' permeability; K is what the forces change by with their markers
+   (bodies/force.h); k is the background's velocity, less that of the obstacle; M and the integral are 0 without inertia
+   of the fluid (bodies/innerfluid.h).
 
    A Stokes solve gives the fluid's velocity and pressure for any force. So the unknowns are V, the obstacles' F, q and
    sigma, and a product with the operator costs one Stokes solve for the velocity at the markers alone; velocity and
