@@ -87,7 +87,7 @@ class Options(TypedDict, total=False):
     coupling_box_part: Literal['true', 'false'] | None  # with the exact near field: the grid's error of second order in what walls and periodic images do is taken off; default false from 256 cells across on
     contact_repulsion: Value  # coupled: K, stress that pushes membranes from one another, from other parts of themselves and from walls, K (1 - d/D) at a distance d, and free obstacles from them, from one another and from walls (length^2/time^2); 0: none
     contact_repulsion_range: Value  # D, up to which it acts (length); 0: 1.5 times the longest mean edge, in three dimensions a tenth of the least R0
-    contact_adhesion: Value  # with a repulsion: W, energy a length, in three dimensions an area, of membranes that stick together at the distance D (length^3/time^2); 0: none
+    contact_adhesion: Value  # with a repulsion: W, energy a length, in three dimensions an area, of membranes, bodies and walls that stick together at the distance D (length^3/time^2); 0: none
     contact_adhesion_range: Value  # B, width of the band from D to D + B in which they are drawn together (length); 0: D
     contact_potential: Value  # coupled: H of the potential H ((d/z)^m - m/n (d/z)^n) between the points of different membranes, a length of both, z their distance (length^2/time^2); 0: none
     contact_potential_distance: Value  # d, at which the potential is least (length)

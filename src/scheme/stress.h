@@ -4,8 +4,7 @@
 #pragma once
 #include "scheme/stepcommon.h"
 
-/* StressApplies - whether the scene is a sheared channel with vesicles or free bodies. Not
-   collective. */
+/* StressApplies - whether the scene is a sheared channel with bodies. Not collective. */
 PETSC_EXTERN PetscBool StressApplies(Scheme scheme);
 
 /* StressMeasure - fill in report.stress. The stress at the walls is that of velocity w and pressure p (NULL: from
