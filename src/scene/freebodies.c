@@ -28,6 +28,12 @@ static PetscErrorCode FreeBodiesRead(Draft scene) {
 /* clang-format off */
 static PetscErrorCode FreeBodyCheck(Scene scene, PetscInt b) {
   const SceneObstacles *own = &scene->obstacles;
+  const SceneFreeBodies *f = &own->free;
+  const PetscBool pushed = f->force.n > 2 && (ListEntry(&f->force, 2, b, 0) != 0 || ListEntry(&f->force, 2, b, 1) != 0);
+  const SceneRule held[] = {
+    {pushed, "-obstacle_force {-obstacle_force}: obstacle %.0f does not move freely; allowed: 0,0 for it, or it among -obstacle_free", {b + 1}},
+    {f->torque.n > 1 && ListEntry(&f->torque, 1, b, 0) != 0,
+     "-obstacle_torque {-obstacle_torque}: obstacle %.0f does not move freely; allowed: 0 for it, or it among -obstacle_free", {b + 1}}};
   const SceneRule rules[] = {
     {own->outline.kind[b].type != CURVE_CLOSED,
      "-obstacle_free {-obstacle_free}: obstacle %.0f is no closed curve; allowed: closed ones", {b + 1}},
@@ -35,7 +41,7 @@ static PetscErrorCode FreeBodyCheck(Scene scene, PetscInt b) {
      "-obstacle_free {-obstacle_free}: obstacle %.0f is a container of the fluid; allowed: bodies in the fluid", {b + 1}},
     {own->velocity[2 * b] != 0 || own->velocity[2 * b + 1] != 0 || own->turn[b] != 0,
      "-obstacle_free {-obstacle_free}: obstacle %.0f has a velocity or rotation given; allowed: free ones without", {b + 1}}};
-  return REFUSE(scene, rules);
+  return f->is[b] ? REFUSE(scene, rules) : REFUSE(scene, held);
 }
 
 static PetscErrorCode FreeBodiesCheckScene(Scene s) {
@@ -67,7 +73,6 @@ PetscErrorCode SceneChooseFreeBodies(Draft scene) {
   PetscCall(SceneCheckList(scene, "-obstacle_force", 2, curves, "obstacles", "each"));
   PetscCall(SceneCheckList(scene, "-obstacle_torque", 1, curves, "obstacles", "each"));
   PetscCall(FreeBodiesCheckScene(scene));
-  for (PetscInt b = 0; b < curves; b++)
-    if (own->is[b]) PetscCall(FreeBodyCheck(scene, b));
+  for (PetscInt b = 0; b < curves; b++) PetscCall(FreeBodyCheck(scene, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
