@@ -43,15 +43,16 @@ static void ObstacleAddLoad(Grid g, PetscReal scale, const PetscReal from[3], co
   to[2] += scale * (from[2] + d[0] * from[1] - d[1] * from[0]);
 }
 
-/* The forces of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, and its torque about
-   the centroid: load[3 vesicles], and the centroids place[2 vesicles]. */
+/* The forces of gravity and contact on each vesicle, whose sum over a vesicle need not be zero, those of the step made
+   last, and their torque about the centroid: load[3 vesicles], and the centroids place[2 vesicles]. */
 static PetscErrorCode VesicleLoads(Scheme s, PetscReal load[], PetscReal place[]) {
   const Membrane m = s->membrane;
   const Layout l = m->layout;
-  const PetscScalar *X;
+  const PetscScalar *X, *step;
   PetscScalar *F;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * l->n, &F));
+  PetscCall(VecGetArrayRead(s->coupling->mobility->F, &step));
   PetscCall(VecGetArrayRead(s->state.X, &X));
   PetscCall(ForcesLaw(s->coupling->forces, FORCE_BETWEEN, FORCE_OUTSIDE, StateInstant(&s->state), X, F));
   for (PetscInt v = l->own; v < l->end; v++) {
@@ -60,7 +61,10 @@ static PetscErrorCode VesicleLoads(Scheme s, PetscReal load[], PetscReal place[]
     MembraneMeasure(m, v, X + 2 * at, &measures);
     for (int c = 0; c < 2; c++) place[2 * v + c] = measures.center[c];
     MotionSum(measures.center, LayoutCount(l, v), X + 2 * at, F + 2 * at, load + 3 * v);
+    for (int c = 0; c < 2; c++) load[3 * v + c] = 0;
+    for (PetscInt k = 2 * at; k < 2 * (at + LayoutCount(l, v)); k++) load[3 * v + k % 2] -= step[k];
   }
+  PetscCall(VecRestoreArrayRead(s->coupling->mobility->F, &step));
   PetscCall(VecRestoreArrayRead(s->state.X, &X));
   PetscCall(PetscFree(F));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)(3 * l->bodies), MPIU_REAL, MPI_SUM, l->comm));

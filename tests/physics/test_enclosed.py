@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from harness import run_petves
 from test_obstacles import PERIODIC, STILL, last
 
 BOX = "-domain_box -1,1,-1,1 -domain_cells 64,64 -fluid_inertia none"
@@ -80,6 +81,22 @@ def test_a_heavy_vesicle_in_a_container(tmp_path):
     options = f"{options} -domain_box -2,2,-2,2 -domain_cells 48,48 -obstacle_shape file -obstacle_file {curves}"
     row = last(tmp_path / "run", f"{options} -fluid_inertia none -vesicle_density_difference 2")
     assert row["obstacle_force_y_1"] == pytest.approx(-2 * np.pi * 0.3 * 0.4, rel=1e-6)
+
+
+def test_contact_keeps_the_momentum(tmp_path):
+    """A container bears what acts on the bodies in it, however they push one another."""
+    curves = tmp_path / "disc.txt"
+    curves.write_text(circle(1.6, container=True) + circle(0.3, center=(0.1, 0.1)))
+    options = (
+        f"-domain_box -2,2,-2,2 -domain_cells 64,64 -fluid_inertia none -obstacle_shape file -obstacle_file {curves}"
+    )
+    options += " -obstacle_free 2 -obstacle_force 0,0,3,1 -vesicle_semi_axes .3,.4 -vesicle_center .8,.2 -time_step .01"
+    options += " -time_end .1 -contact_repulsion 50 -contact_repulsion_range .3 -coupled_ksp_rtol 1e-11"
+    series = run_petves(tmp_path, options).series
+    assert series["energy_contact"].min() > 0.1
+    assert series["obstacle_force_x_1"] == pytest.approx(3, abs=1e-7) and series["obstacle_force_y_1"] == pytest.approx(
+        1, abs=1e-7
+    )
 
 
 def test_with_inertia_the_load_of_a_container_that_moves_is_not_given(tmp_path):
