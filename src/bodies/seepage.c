@@ -7,8 +7,8 @@ void SeepageAdd(Membrane m, PetscReal alpha, PetscBool osmotic, const PetscReal 
   PetscReal *z = m->work.memory;
   for (PetscInt v = m->layout->own; v < m->layout->end && m->permeability > 0; v++) {
     const PetscInt at = 2 * LayoutOffset(m->layout, v);
-    Measures measures;
-    MembraneMeasure(m, v, X + at, &measures);
+    Measures measures = {.area = 1};
+    if (osmotic) MembraneMeasure(m, v, X + at, &measures);
     MembraneAreaGradient(m, v, X + at, z);
     const PetscReal pressure = osmotic ? m->osmotic[0] * m->A0[v] / measures.area - m->osmotic[1] : 0;
     for (PetscInt k = 0; k < 2 * LayoutCount(m->layout, v); k += 2) {

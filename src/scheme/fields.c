@@ -39,9 +39,13 @@ PetscErrorCode SchemeFluidAtMarkers(Scheme s, Vec *U) {
   const State *q = &s->state;
   Vec F;
   PetscFunctionBeginUser;
+  if (s->membrane->permeability == 0) {
+    *U = q->U;
+    PetscCall(PetscObjectReference((PetscObject)q->U));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecDuplicate(q->U, U));
   PetscCall(VecCopy(q->U, *U));
-  if (s->membrane->permeability == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(q->X, &F));
   PetscCall(CouplingForces(s->coupling, StateInstant(q), q->sigma, q->X, F));
   PetscCall(VecScale(F, -1));

@@ -10,7 +10,7 @@ PETSC_EXTERN PetscErrorCode SchemeFields(Scheme scheme);
 PETSC_EXTERN PetscErrorCode SchemeVelocity(Scheme scheme);
 
 /* SchemeFluidAtMarkers - the fluid's velocity at the vesicles' markers in a solved state: that of the markers, but for
-   the water that passes; a new vector. */
+   the water that passes. VecDestroy gives it back; not to be changed. */
 PETSC_EXTERN PetscErrorCode SchemeFluidAtMarkers(Scheme scheme, Vec *U);
 
 /* SchemeFlows - what states that have a flow are turned into velocities by, borrowed. */

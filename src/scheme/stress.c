@@ -86,13 +86,14 @@ static PetscErrorCode Shortfall(Scheme s, Vec F, PetscReal sum[2]) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether no body has a force along x from outside: the moment F x of such a force goes by where x = 0 is. */
+/* Whether the fluid's force along x on every body is zero: the moment F x of another force goes by where x = 0 is. With
+   inertia a body that moves freely takes up momentum. */
 static PetscBool StressIsBalanced(Scheme s) {
   const Obstacles o = s->coupling->bodies->obstacles;
   for (PetscInt v = 0; v < s->membrane->layout->bodies && SceneHasGravity(s->scene); v++)
     if (SceneWeight(s->scene, v, 0) != 0) return PETSC_FALSE;
   for (PetscInt b = 0; o && b < o->layout->bodies; b++)
-    if (!o->motion[b].free || o->load[3 * (o->motion[b].free - 1)] != 0) return PETSC_FALSE;
+    if (!s->fluid->steady || !o->motion[b].free || o->load[3 * (o->motion[b].free - 1)] != 0) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
